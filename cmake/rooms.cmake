@@ -1,0 +1,22 @@
+# What every target of the project shares.
+add_library(diaphane_flags INTERFACE)
+target_compile_options(diaphane_flags INTERFACE -Wall -Wextra -Wno-missing-field-initializers)
+if(DIAPHANE_SANITIZE)
+  target_compile_options(diaphane_flags INTERFACE -fsanitize=${DIAPHANE_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(diaphane_flags INTERFACE -fsanitize=${DIAPHANE_SANITIZE})
+endif()
+
+# diaphane_room(NAME dependency...): one server room, every .cc below its folder, one library (headers alone where there
+# is no .cc).
+function(diaphane_room name)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cc)
+  if(sources)
+    add_library(diaphane_${name} STATIC ${sources})
+    target_include_directories(diaphane_${name} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
+    target_link_libraries(diaphane_${name} PUBLIC diaphane_flags ${ARGN})
+  else()
+    add_library(diaphane_${name} INTERFACE)
+    target_include_directories(diaphane_${name} INTERFACE ${CMAKE_CURRENT_SOURCE_DIR})
+    target_link_libraries(diaphane_${name} INTERFACE diaphane_flags ${ARGN})
+  endif()
+endfunction()

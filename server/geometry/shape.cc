@@ -1,0 +1,76 @@
+#include "geometry/shape.h"
+
+#include <cmath>
+
+#include "glm/geometric.hpp"
+#include "glm/mat3x3.hpp"
+#include "glm/matrix.hpp"
+
+namespace diaphane::geometry {
+namespace {
+
+/// Unit vector, or `fallback` where `v` has no usable length.
+glm::vec3 normalised_or(const glm::vec3& v, const glm::vec3& fallback) {
+  const float length = glm::length(v);
+  return length > 0 && std::isfinite(length) ? v / length : fallback;
+}
+
+/// The cofactor matrix: takes normals where `m` takes points, for singular m too, up to length.
+glm::mat3 cofactors(const glm::mat3& m) {
+  return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
+}
+
+}  // namespace
+
+std::vector<glm::vec3> compute_normals(const MeshTopology& topology, std::span<const glm::vec3> positions) {
+  std::vector<glm::vec3> area_vectors(topology.triangles.size());
+  for (size_t t = 0; t < topology.triangles.size(); ++t) {
+    const glm::uvec3& i = topology.triangles[t];
+    area_vectors[t] = glm::cross(positions[i.y] - positions[i.x], positions[i.z] - positions[i.x]);
+  }
+  std::vector<glm::vec3> weld_normals(topology.weld_count);
+  for (uint32_t w = 0; w < topology.weld_count; ++w) {
+    glm::vec3 sum(0);
+    for (uint32_t k = topology.first_triangle[w]; k < topology.first_triangle[w + 1]; ++k) {
+      sum += area_vectors[topology.triangle_of_weld[k]];
+    }
+    weld_normals[w] = normalised_or(sum, {0, 0, 1});
+  }
+  std::vector<glm::vec3> normals(topology.vertex_count);
+  for (uint32_t v = 0; v < topology.vertex_count; ++v) normals[v] = weld_normals[topology.weld_of_vertex[v]];
+  return normals;
+}
+
+PlacedShape place(const MeshTopology& topology, const MeshShape& shape, const glm::mat4& scene_from_mesh,
+                  double millimetres_per_unit) {
+  PlacedShape placed;
+  const auto linear = glm::mat3(scene_from_mesh);
+  placed.flipped = glm::determinant(linear) < 0;
+  const auto scale = static_cast<float>(millimetres_per_unit);
+  placed.positions_mm.resize(shape.positions.size());
+  for (size_t v = 0; v < shape.positions.size(); ++v) {
+    placed.positions_mm[v] = glm::vec3(scene_from_mesh * glm::vec4(shape.positions[v], 1)) * scale;
+  }
+  placed.normals = compute_normals(topology, placed.positions_mm);
+  if (placed.flipped) {
+    for (glm::vec3& n : placed.normals) n = -n;
+  }
+  if (!shape.normals.empty()) {
+    const glm::mat3 normal_from_mesh = cofactors(linear) * (placed.flipped ? -1.0f : 1.0f);
+    for (size_t v = 0; v < shape.normals.size(); ++v) {
+      placed.normals[v] = normalised_or(normal_from_mesh * shape.normals[v], placed.normals[v]);
+    }
+  }
+  return placed;
+}
+
+Bounds bounds_of(std::span<const glm::vec3> positions) {
+  Bounds bounds{positions.front(), positions.front()};
+  for (const glm::vec3& p : positions) {
+    bounds.lowest = glm::min(bounds.lowest, p);
+    bounds.highest = glm::max(bounds.highest, p);
+  }
+  return bounds;
+}
+
+}  // namespace diaphane::geometry

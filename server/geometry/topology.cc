@@ -1,0 +1,84 @@
+#include "geometry/topology.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "absl/container/flat_hash_map.h"
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+
+namespace diaphane::geometry {
+namespace {
+
+// Squares of coordinates, and sums of them, must stay finite in float.
+constexpr float kLargestCoordinate = 1e18f;
+
+using PositionBits = std::array<uint32_t, 3>;
+
+PositionBits bits_of(const glm::vec3& p) {
+  return {std::bit_cast<uint32_t>(p.x), std::bit_cast<uint32_t>(p.y), std::bit_cast<uint32_t>(p.z)};
+}
+
+void weld(MeshTopology& mesh) {
+  absl::flat_hash_map<PositionBits, uint32_t> weld_of_position;
+  weld_of_position.reserve(mesh.vertex_count);
+  mesh.weld_of_vertex.resize(mesh.vertex_count);
+  for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
+    const auto next = static_cast<uint32_t>(weld_of_position.size());
+    mesh.weld_of_vertex[v] = weld_of_position.try_emplace(bits_of(mesh.uploaded_positions[v]), next).first->second;
+  }
+  mesh.weld_count = static_cast<uint32_t>(weld_of_position.size());
+}
+
+void list_triangles_of_welds(MeshTopology& mesh) {
+  mesh.first_triangle.assign(mesh.weld_count + 1, 0);
+  for (const glm::uvec3& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) ++mesh.first_triangle[mesh.weld_of_vertex[t[k]] + 1];
+  }
+  for (uint32_t w = 0; w < mesh.weld_count; ++w) mesh.first_triangle[w + 1] += mesh.first_triangle[w];
+  std::vector<uint32_t> next(mesh.first_triangle.begin(), mesh.first_triangle.end() - 1);
+  mesh.triangle_of_weld.resize(mesh.triangles.size() * 3);
+  for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) mesh.triangle_of_weld[next[mesh.weld_of_vertex[mesh.triangles[t][k]]]++] = t;
+  }
+}
+
+}  // namespace
+
+absl::Status check_finite(std::span<const glm::vec3> values, std::string_view field) {
+  for (size_t i = 0; i < values.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      // Written so that NaN fails too.
+      if (!(std::abs(values[i][axis]) <= kLargestCoordinate)) {
+        return base::invalid_field(absl::StrCat(field, "[", i, "].", std::string(1, "xyz"[axis])),
+                                   "finite, within ±1e18", values[i][axis]);
+      }
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::shared_ptr<const MeshTopology>> build_topology(std::vector<glm::vec3> positions,
+                                                                   std::vector<glm::uvec3> triangles) {
+  if (triangles.empty()) return base::invalid_field("triangle_count", "at least 1", 0);
+  if (absl::Status finite = check_finite(positions, "positions"); !finite.ok()) return finite;
+  for (size_t t = 0; t < triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      if (triangles[t][k] >= positions.size()) {
+        return base::invalid_field(absl::StrCat("indices[", 3 * t + k, "]"),
+                                   absl::StrCat("below vertex_count ", positions.size()), triangles[t][k]);
+      }
+    }
+  }
+  auto mesh = std::make_shared<MeshTopology>();
+  mesh->vertex_count = static_cast<uint32_t>(positions.size());
+  mesh->triangles = std::move(triangles);
+  mesh->uploaded_positions = std::move(positions);
+  weld(*mesh);
+  list_triangles_of_welds(*mesh);
+  return std::shared_ptr<const MeshTopology>(std::move(mesh));
+}
+
+}  // namespace diaphane::geometry

@@ -1,0 +1,41 @@
+// The classical dipole of JMLH01 in the form of JB02, for three channels.
+#pragma once
+
+#include "glm/vec3.hpp"
+
+namespace diaphane::optics {
+
+/// What a body is made of. Absorption σa ≥ 0 and reduced scattering σ's > 0 in mm⁻¹, linear RGB; η is the ratio of
+/// refractive indices, inside over outside, 1..3.
+struct Coefficients {
+  glm::vec3 absorption_mm{0};
+  glm::vec3 reduced_scattering_mm{1};
+  float refractive_index = 1.3f;
+};
+
+/// The dipole's constants for one material, per channel, in mm and mm⁻¹.
+/// zv = zr + 4AD: the paper's Table 1 has zr(1 + 4AD), whose dimensions do not agree.
+struct Dipole {
+  glm::vec3 mean_free_path_mm{0};       ///< l = 1/σ't, also zr, the depth of the real source
+  glm::vec3 virtual_height_mm{0};       ///< zv, the height of the virtual source
+  glm::vec3 effective_transport_mm{0};  ///< σ = √(3 σa σ't), mm⁻¹
+  glm::vec3 reduced_albedo{0};          ///< α' = σ's/σ't
+};
+
+/// Constants of `material`. Thread-safe.
+Dipole make_dipole(const Coefficients& material);
+
+/// Rd(r) in mm⁻², r ≥ 0 the straight-line distance in mm. JB02, with distances √(r² + z²).
+glm::vec3 diffuse_reflectance(const Dipole& dipole, float distance_mm);
+
+/// ∫ Rd dA over the plane: the share of a uniform irradiance that a half-space gives back.
+/// (α'/2)(1 + e^(−4/3·A·√(3(1−α'))))·e^(−√(3(1−α'))). JMLH01.
+glm::vec3 total_reflectance(const Coefficients& material);
+
+/// Average diffuse Fresnel reflectance Fdr inside a body of refractive index η ≥ 1; 0 at η = 1.
+float diffuse_fresnel_reflectance(float refractive_index);
+
+/// Unpolarised Fresnel transmittance 1 − R from outside into η at the cosine of incidence, 0..1.
+float fresnel_transmittance(float refractive_index, float cosine);
+
+}  // namespace diaphane::optics

@@ -1,0 +1,79 @@
+// A frame that somebody asked for, and the frame that came of it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "base/image.h"
+#include "scene/camera.h"
+#include "scene/snapshot.h"
+
+namespace diaphane::render {
+
+enum class Technique { kPaper, kLambert };
+enum class Terms { kBoth, kLocal, kGlobal };
+
+struct PaperSettings {
+  Terms terms = Terms::kBoth;
+  uint32_t kernel_taps = 5;     ///< a side, 3..6
+  uint32_t face_size_px = 256;  ///< 16..2048
+  float global_gain = 1;        ///< 0..1000
+};
+
+struct RenderSettings {
+  Technique technique = Technique::kPaper;
+  PaperSettings paper;
+  float exposure_ev = 0;  ///< stops; not applied to linear pixels
+};
+
+enum class PixelFormat {
+  kSrgb8,       ///< base::Image8, after exposure
+  kLinearFloat  ///< base::ImageF, outgoing radiance in W·mm⁻²·sr⁻¹, channels R G B A
+};
+
+/// Plain values; the snapshot keeps everything it needs alive.
+struct FrameRequest {
+  std::shared_ptr<const scene::SceneSnapshot> scene;
+  scene::Camera camera;
+  uint32_t width_px = 1280;
+  uint32_t height_px = 720;
+  RenderSettings settings;
+  PixelFormat format = PixelFormat::kSrgb8;
+};
+
+struct StageTime {
+  std::string stage;
+  double milliseconds = 0;
+  bool ran = false;  ///< false: inputs unchanged, the stage slept
+};
+
+struct Frame {
+  std::variant<base::Image8, base::ImageF> image;
+  uint64_t scene_revision = 0;
+  std::vector<StageTime> stages;
+  std::string path;  ///< the code path that made the pixels
+};
+
+struct RendererInfo {
+  std::string gl_renderer;
+  std::string gl_vendor;
+  std::string gl_version;
+  bool software = false;
+  std::string reason;  ///< how the context was found, and why this one
+};
+
+/// Makes frames. One thread only: the one that made it. Tests put a fake in its place.
+class FrameRenderer {
+ public:
+  virtual ~FrameRenderer() = default;
+  /// Errors: FAILED_PRECONDITION no mesh; CANCELLED once `cancelled` is seen set; RESOURCE_EXHAUSTED out of memory.
+  virtual absl::StatusOr<Frame> render(const FrameRequest& request, const std::atomic<bool>& cancelled) = 0;
+  virtual RendererInfo info() const = 0;
+};
+
+}  // namespace diaphane::render

@@ -1,0 +1,54 @@
+// What a scene is at one revision: immutable values that any thread may read and the render thread draws.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "geometry/shape.h"
+#include "geometry/topology.h"
+#include "glm/mat4x4.hpp"
+#include "glm/vec3.hpp"
+#include "optics/dipole.h"
+
+namespace diaphane::scene {
+
+struct Material {
+  std::string name;    ///< scenes/{scene}/materials/{material}
+  std::string preset;  ///< empty: free coefficients
+  optics::Coefficients coefficients;
+};
+
+struct PointLight {
+  glm::vec3 position{0};         ///< scene units
+  glm::vec3 intensity_w_sr{0};  ///< W·sr⁻¹
+};
+
+struct Light {
+  std::string name;  ///< scenes/{scene}/lights/{light}
+  std::variant<PointLight> kind;
+};
+
+struct Mesh {
+  std::string name;  ///< scenes/{scene}/meshes/{mesh}
+  std::string material;
+  glm::mat4 scene_from_mesh{1};
+  std::shared_ptr<const geometry::MeshTopology> topology;  ///< the same object as long as the triangles are
+  std::shared_ptr<const geometry::MeshShape> shape;        ///< a new object whenever positions change
+  uint64_t positions_revision = 0;                         ///< scene revision at which `shape` last changed
+};
+
+/// Stages compare the shared pointers and values in here to learn what changed; there is nothing else to compare.
+struct SceneSnapshot {
+  std::string name;  ///< scenes/{scene}
+  std::string display_name;
+  uint64_t revision = 0;
+  double millimetres_per_unit = 1;
+  std::vector<std::shared_ptr<const Mesh>> meshes;
+  std::vector<Material> materials;
+  std::vector<Light> lights;
+};
+
+}  // namespace diaphane::scene

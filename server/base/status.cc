@@ -1,8 +1,8 @@
 #include "base/status.h"
 
 #include "absl/strings/cord.h"
-#include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "fmt/format.h"
 
 namespace diaphane::base {
 namespace {
@@ -13,10 +13,9 @@ constexpr char kSeparator = '\x1f';
 }  // namespace
 
 absl::Status field_error(absl::StatusCode code, const FieldViolation& violation) {
-  absl::Status status(code, absl::StrCat(violation.field, ": must be ", violation.range, ", got ", violation.value));
-  const std::string separator(1, kSeparator);
-  status.SetPayload(kPayloadUrl, absl::Cord(absl::StrCat(violation.field, separator, violation.value, separator,
-                                                         violation.range)));
+  absl::Status status(code, fmt::format("{}: must be {}, got {}", violation.field, violation.range, violation.value));
+  status.SetPayload(kPayloadUrl, absl::Cord(fmt::format("{}{}{}{}{}", violation.field, kSeparator, violation.value,
+                                                        kSeparator, violation.range)));
   return status;
 }
 
@@ -26,7 +25,7 @@ absl::Status invalid_field(std::string_view field, std::string_view range, std::
 }
 
 absl::Status invalid_field(std::string_view field, std::string_view range, double value) {
-  return invalid_field(field, range, absl::StrCat(value));
+  return invalid_field(field, range, fmt::format("{}", value));
 }
 
 FieldViolation field_violation(const absl::Status& status) {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "absl/container/flat_hash_map.h"
-#include "absl/strings/str_cat.h"
 #include "base/status.h"
+#include "fmt/format.h"
 
 namespace diaphane::geometry {
 namespace {
@@ -52,7 +52,7 @@ absl::Status check_finite(std::span<const glm::vec3> values, std::string_view fi
     for (int axis = 0; axis < 3; ++axis) {
       // Written so that NaN fails too.
       if (!(std::abs(values[i][axis]) <= kLargestCoordinate)) {
-        return base::invalid_field(absl::StrCat(field, "[", i, "].", std::string(1, "xyz"[axis])),
+        return base::invalid_field(fmt::format("{}[{}].{}", field, i, "xyz"[axis]),
                                    "finite, within ±1e18", values[i][axis]);
       }
     }
@@ -67,8 +67,8 @@ absl::StatusOr<std::shared_ptr<const MeshTopology>> build_topology(std::vector<g
   for (size_t t = 0; t < triangles.size(); ++t) {
     for (int k = 0; k < 3; ++k) {
       if (triangles[t][k] >= positions.size()) {
-        return base::invalid_field(absl::StrCat("indices[", 3 * t + k, "]"),
-                                   absl::StrCat("below vertex_count ", positions.size()), triangles[t][k]);
+        return base::invalid_field(fmt::format("indices[{}]", 3 * t + k),
+                                   fmt::format("below vertex_count {}", positions.size()), triangles[t][k]);
       }
     }
   }

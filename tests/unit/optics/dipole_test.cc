@@ -43,6 +43,7 @@ TEST(Dipole, AgreesWithTheIndependentTable) {
   const nlohmann::json table = nlohmann::json::parse(file)["materials"];
   int compared = 0;
   for (const auto& [title, row] : table.items()) {
+    if (title.find("not measured") != std::string::npos) continue;
     std::string name;
     for (char letter : title) {
       if (std::isalnum(static_cast<unsigned char>(letter))) name += static_cast<char>(std::tolower(letter));

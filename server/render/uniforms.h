@@ -1,0 +1,65 @@
+// The uniform and storage blocks of shaders/shared, byte for byte.
+#pragma once
+
+#include <cstdint>
+
+#include "glm/mat4x4.hpp"
+#include "glm/vec4.hpp"
+#include "optics/dipole.h"
+
+namespace diaphane::render {
+
+#include "../../shaders/shared/bindings.glsl"
+
+struct ViewUniforms {
+  glm::mat4 clip_from_world{1};
+  glm::vec4 eye_mm{0};
+  float radiance_scale = 1;
+  float mesh_id = 0;
+  float flipped = 0;
+  float unused = 0;
+};
+static_assert(sizeof(ViewUniforms) == 96);
+
+struct MaterialUniforms {
+  glm::vec4 mean_free_path_mm;
+  glm::vec4 virtual_height_mm;
+  glm::vec4 effective_transport_mm;
+  glm::vec4 reduced_albedo;
+  glm::vec4 total_reflectance;
+};
+static_assert(sizeof(MaterialUniforms) == 80);
+
+struct BoxUniforms {
+  glm::vec4 centre_mm{0};
+  glm::vec4 extent_mm{1};
+  int32_t face_size_px = 0;
+  int32_t unused[3] = {};
+};
+static_assert(sizeof(BoxUniforms) == 48);
+
+struct PaperUniforms {
+  int32_t terms = 0;
+  int32_t kernel_taps = 0;
+  float global_gain = 1;
+  float unused = 0;
+};
+static_assert(sizeof(PaperUniforms) == 16);
+
+struct PointLightStorage {
+  glm::vec4 position_mm{0};
+  glm::vec4 intensity_w_sr{0};
+  bool operator==(const PointLightStorage&) const = default;
+};
+static_assert(sizeof(PointLightStorage) == 32);
+
+/// The paper gives one mean free path: the kernel's width takes the mean of the three channels'.
+inline MaterialUniforms material_uniforms(const optics::Coefficients& material) {
+  const optics::Dipole dipole = optics::make_dipole(material);
+  const glm::vec3& l = dipole.mean_free_path_mm;
+  return {glm::vec4(l, material.refractive_index), glm::vec4(dipole.virtual_height_mm, (l.x + l.y + l.z) / 3),
+          glm::vec4(dipole.effective_transport_mm, 0), glm::vec4(dipole.reduced_albedo, 0),
+          glm::vec4(optics::total_reflectance(material), 0)};
+}
+
+}  // namespace diaphane::render

@@ -1,0 +1,18 @@
+#version 430 core
+#include "shared/view.glsl"
+
+in vec3 world_mm;
+in vec3 world_normal;
+
+layout(location = 0) out vec4 position;  // mm; a: mesh id
+layout(location = 1) out vec4 normal;
+
+void main() {
+  vec3 n = normalize(world_normal);
+  // The inside of an open surface is shaded as a surface of its own. Both signs are asked: a silhouette's normal may look
+  // away from the eye on a front face, and a file may wind its triangles against its normals.
+  bool back_face = gl_FrontFacing == (flipped != 0.0);
+  if (back_face && dot(n, eye_mm.xyz - world_mm) < 0.0) n = -n;
+  position = vec4(world_mm, mesh_id);
+  normal = vec4(n, 0.0);
+}

@@ -1,0 +1,14 @@
+#version 430 core
+#include "shared/view.glsl"
+
+layout(location = ATTRIBUTE_POSITION) in vec3 position_mm;
+layout(location = ATTRIBUTE_NORMAL) in vec3 normal;
+
+out vec3 world_mm;
+out vec3 world_normal;
+
+void main() {
+  world_mm = position_mm;
+  world_normal = normal;
+  gl_Position = clip_from_world * vec4(position_mm, 1.0);
+}

@@ -1,0 +1,18 @@
+// Binding points and attribute locations; C++ reads this file too.
+#define ATTRIBUTE_POSITION 0
+#define ATTRIBUTE_NORMAL 1
+
+#define UNIT_GBUFFER_POSITION 0
+#define UNIT_GBUFFER_NORMAL 1
+#define UNIT_ATLAS_IRRADIANCE 2
+#define UNIT_ATLAS_SURFACE 3
+
+#define UNIFORMS_VIEW 0
+#define UNIFORMS_MATERIAL 1
+#define UNIFORMS_BOX 2
+#define UNIFORMS_PAPER 3
+
+#define STORAGE_LIGHTS 0
+
+#define TERM_LOCAL 1
+#define TERM_GLOBAL 2

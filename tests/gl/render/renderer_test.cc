@@ -1,0 +1,211 @@
+// The renderer as the service sees it: frames of scenes, and which stages ran.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "render/gl_renderer.h"
+#include "tests/gl/render/scenes.h"
+
+namespace diaphane::render {
+namespace {
+
+const std::atomic<bool> kNotCancelled = false;
+
+class Renderer : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    auto made = make_gl_renderer({.warm_all = false});
+    ASSERT_TRUE(made.ok()) << made.status();
+    renderer_ = std::move(*made).release();
+  }
+  static void TearDownTestSuite() {
+    delete renderer_;
+    renderer_ = nullptr;
+  }
+
+  Frame render(const FrameRequest& request) {
+    absl::StatusOr<Frame> frame = renderer_->render(request, kNotCancelled);
+    EXPECT_TRUE(frame.ok()) << frame.status();
+    return frame.ok() ? *std::move(frame) : Frame{};
+  }
+
+  static std::map<std::string, bool> ran(const Frame& frame) {
+    std::map<std::string, bool> stages;
+    for (const StageTime& stage : frame.stages) stages[stage.stage] = stage.ran;
+    return stages;
+  }
+
+  static FrameRequest request_of(std::shared_ptr<const scene::SceneSnapshot> scene) {
+    FrameRequest request;
+    request.scene = std::move(scene);
+    request.camera.eye = {0, 0, 60};
+    request.width_px = 96;
+    request.height_px = 64;
+    return request;
+  }
+
+  static inline FrameRenderer* renderer_ = nullptr;
+};
+
+std::shared_ptr<scene::SceneSnapshot> marble_box() {
+  auto scene = make_scene(make_box({20, 20, 20}, 8), "marble");
+  add_point_light(*scene, {20, 30, 40}, 4000);
+  return scene;
+}
+
+TEST_F(Renderer, SaysWhichContextItGotAndWhy) {
+  const RendererInfo info = renderer_->info();
+  EXPECT_FALSE(info.gl_renderer.empty());
+  EXPECT_FALSE(info.reason.empty());
+}
+
+TEST_F(Renderer, DrawsTheBodyInTheMiddleAndNothingAround) {
+  const Frame frame = render(request_of(marble_box()));
+  const auto& image = std::get<base::Image8>(frame.image);
+  ASSERT_EQ(image.rgba.size(), 96u * 64 * 4);
+  const auto alpha = [&](uint32_t x, uint32_t y) { return image.rgba[4 * (y * 96 + x) + 3]; };
+  EXPECT_EQ(alpha(48, 32), 255);
+  EXPECT_EQ(alpha(2, 2), 0);
+  EXPECT_GT(image.rgba[4 * (32 * 96 + 48)], 30);
+}
+
+TEST_F(Renderer, LeavesTheSceneWithoutMeshesToTheCaller) {
+  FrameRequest request = request_of(std::make_shared<scene::SceneSnapshot>());
+  EXPECT_EQ(renderer_->render(request, kNotCancelled).status().code(), absl::StatusCode::kFailedPrecondition);
+}
+
+TEST_F(Renderer, StopsWhenCancelled) {
+  const std::atomic<bool> cancelled = true;
+  EXPECT_EQ(renderer_->render(request_of(marble_box()), cancelled).status().code(), absl::StatusCode::kCancelled);
+}
+
+TEST_F(Renderer, SleepsWhatDidNotChange) {
+  const auto scene = marble_box();
+  FrameRequest request = request_of(scene);
+  render(request);
+  request.camera.eye = {10, 0, 60};
+  auto stages = ran(render(request));
+  EXPECT_FALSE(stages.at("place"));
+  EXPECT_FALSE(stages.at("upload"));
+  EXPECT_FALSE(stages.at("atlas"));
+  EXPECT_TRUE(stages.at("gbuffer"));
+
+  auto moved_light = std::make_shared<scene::SceneSnapshot>(*scene);
+  std::get<scene::PointLight>(moved_light->lights[0].kind).position.x += 5;
+  request.scene = moved_light;
+  stages = ran(render(request));
+  EXPECT_FALSE(stages.at("place"));
+  EXPECT_TRUE(stages.at("atlas"));
+
+  auto other_material = std::make_shared<scene::SceneSnapshot>(*moved_light);
+  other_material->materials[0].coefficients.absorption_mm = {0.1f, 0.1f, 0.1f};
+  request.scene = other_material;
+  stages = ran(render(request));
+  EXPECT_FALSE(stages.at("place"));
+  EXPECT_FALSE(stages.at("atlas")) << "irradiance does not depend on absorption";
+
+  auto deformed = std::make_shared<scene::SceneSnapshot>(*other_material);
+  auto mesh = std::make_shared<scene::Mesh>(*deformed->meshes[0]);
+  auto shape = std::make_shared<geometry::MeshShape>(*mesh->shape);
+  shape->positions[0].x += 1;
+  mesh->shape = shape;
+  deformed->meshes[0] = mesh;
+  request.scene = deformed;
+  stages = ran(render(request));
+  EXPECT_TRUE(stages.at("place"));
+  EXPECT_TRUE(stages.at("upload"));
+  EXPECT_TRUE(stages.at("atlas"));
+}
+
+TEST_F(Renderer, EachChangeShowsInThePicture) {
+  const auto scene = marble_box();
+  FrameRequest request = request_of(scene);
+  const auto pixels = [&](const FrameRequest& r) { return std::get<base::Image8>(render(r).image).rgba; };
+  const auto first = pixels(request);
+  auto other_material = std::make_shared<scene::SceneSnapshot>(*scene);
+  other_material->materials[0].coefficients.absorption_mm = {0.1f, 0.5f, 0.9f};
+  auto other_light = std::make_shared<scene::SceneSnapshot>(*scene);
+  std::get<scene::PointLight>(other_light->lights[0].kind).position.x -= 40;
+  FrameRequest changed = request;
+  changed.scene = other_material;
+  EXPECT_NE(pixels(changed), first);
+  changed.scene = other_light;
+  EXPECT_NE(pixels(changed), first);
+  changed = request;
+  changed.camera.eye.x += 8;
+  EXPECT_NE(pixels(changed), first);
+  EXPECT_EQ(pixels(request), first);
+}
+
+TEST_F(Renderer, DeformingAndReturningGivesTheSameBytes) {
+  const auto scene = marble_box();
+  const FrameRequest request = request_of(scene);
+  const auto first = std::get<base::Image8>(render(request).image).rgba;
+  auto deformed = std::make_shared<scene::SceneSnapshot>(*scene);
+  auto mesh = std::make_shared<scene::Mesh>(*scene->meshes[0]);
+  auto shape = std::make_shared<geometry::MeshShape>(*mesh->shape);
+  for (glm::vec3& p : shape->positions) p *= 1.3f;
+  mesh->shape = shape;
+  deformed->meshes[0] = mesh;
+  FrameRequest other = request;
+  other.scene = deformed;
+  EXPECT_NE(std::get<base::Image8>(render(other).image).rgba, first);
+
+  auto returned = std::make_shared<scene::SceneSnapshot>(*deformed);
+  auto back = std::make_shared<scene::Mesh>(*mesh);
+  back->shape = std::make_shared<geometry::MeshShape>(*scene->meshes[0]->shape);
+  returned->meshes[0] = back;
+  other.scene = returned;
+  EXPECT_EQ(std::get<base::Image8>(render(other).image).rgba, first);
+}
+
+TEST_F(Renderer, ExposureDoublesPicturesByStopsAndLeavesLinearPixelsAlone) {
+  FrameRequest request = request_of(marble_box());
+  request.format = PixelFormat::kLinearFloat;
+  const auto linear = std::get<base::ImageF>(render(request).image).values;
+  request.settings.exposure_ev = 3;
+  EXPECT_EQ(std::get<base::ImageF>(render(request).image).values, linear);
+  request.format = PixelFormat::kSrgb8;
+  const auto bright = std::get<base::Image8>(render(request).image).rgba;
+  request.settings.exposure_ev = 0;
+  EXPECT_GT(bright[4 * (32 * 96 + 48)], std::get<base::Image8>(render(request).image).rgba[4 * (32 * 96 + 48)]);
+}
+
+TEST_F(Renderer, TilesMeetWithoutASeam) {
+  FrameRequest request = request_of(marble_box());
+  request.settings.technique = Technique::kLambert;
+  request.width_px = 4096 + 100;
+  request.height_px = 64;
+  request.camera.fov_y_deg = 2;
+  request.camera.target = {0, 0, 10};
+  const Frame frame = render(request);
+  const auto& image = std::get<base::Image8>(frame.image);
+  const auto red = [&](uint32_t x) { return static_cast<int>(image.rgba[4 * (32 * size_t{image.width_px} + x)]); };
+  for (const uint32_t seam : {2048u, 4096u}) {
+    EXPECT_LE(std::abs(red(seam) - red(seam - 1)), 2) << seam;
+  }
+}
+
+TEST_F(Renderer, MeshesOfOneSceneHideEachOther) {
+  auto scene = make_scene(make_box({10, 10, 10}, 4), "marble");
+  add_point_light(*scene, {0, 0, 100}, 1e5f);
+  FrameRequest request = request_of(scene);
+  request.settings.technique = Technique::kLambert;
+  request.format = PixelFormat::kLinearFloat;
+  const auto alone = std::get<base::ImageF>(render(request).image).values;
+  auto front = std::make_shared<scene::Mesh>(*scene->meshes[0]);
+  front->name = "scenes/test/meshes/front";
+  front->scene_from_mesh[3] = glm::vec4(0, 0, 12, 1);
+  scene->materials.push_back({"scenes/test/materials/k", "ketchup", optics::find_preset("ketchup")->coefficients});
+  front->material = "scenes/test/materials/k";
+  auto both_scene = std::make_shared<scene::SceneSnapshot>(*scene);
+  both_scene->meshes.push_back(front);
+  request.scene = both_scene;
+  const auto both = std::get<base::ImageF>(render(request).image).values;
+  const size_t centre = 4 * (32 * 96 + 48);
+  EXPECT_GT(alone[centre + 2], 5 * both[centre + 2]) << "the middle is ketchup now: hardly any blue";
+}
+
+}  // namespace
+}  // namespace diaphane::render

@@ -5,7 +5,7 @@ in vec3 world_mm;
 in vec3 world_normal;
 
 layout(location = 0) out vec4 position;  // mm; a: mesh id
-layout(location = 1) out vec4 normal;
+layout(location = 1) out vec4 normal;    // unit; a: sine of the angle to the triangle's own normal
 
 void main() {
   vec3 n = normalize(world_normal);
@@ -14,5 +14,7 @@ void main() {
   bool back_face = gl_FrontFacing == (flipped != 0.0);
   if (back_face && dot(n, eye_mm.xyz - world_mm) < 0.0) n = -n;
   position = vec4(world_mm, mesh_id);
-  normal = vec4(n, 0.0);
+  vec3 facet = cross(dFdx(world_mm), dFdy(world_mm));
+  float sine = length(cross(n, facet)) / max(length(facet), 1e-20);
+  normal = vec4(n, min(sine, 1.0));
 }

@@ -43,7 +43,7 @@ vec3 gather(int face, float scalar_product, vec3 from_centre_mm) {
   return sum * spacing_mm * spacing_mm;
 }
 
-vec3 local_radiosity(vec3 from_centre_mm, vec3 n) {
+vec3 local_radiosity(vec3 from_centre_mm, vec3 n, float facet_sine) {
   // A face with N·f > 0 always has a corner above the tangent plane (Fig. 2), so the products alone choose and sort.
   vec3 products = abs(n);
   for (int i = 0; i < 3; ++i) {
@@ -52,7 +52,7 @@ vec3 local_radiosity(vec3 from_centre_mm, vec3 n) {
     if (product <= 0.05) break;
     products[axis] = -1.0;
     int face = 2 * axis + (n[axis] < 0.0 ? 1 : 0);
-    if (agrees(face, from_centre_mm, product)) return gather(face, product, from_centre_mm);
+    if (agrees(face, from_centre_mm, n, facet_sine)) return gather(face, product, from_centre_mm);
   }
   return vec3(0.0);
 }
@@ -78,9 +78,10 @@ void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   vec4 position = texelFetch(gbuffer_position, pixel, 0);
   if (position.w != mesh_id) discard;
-  vec3 n = texelFetch(gbuffer_normal, pixel, 0).xyz;
+  vec4 normal = texelFetch(gbuffer_normal, pixel, 0);
+  vec3 n = normal.xyz;
   vec3 radiosity = vec3(0.0);
-  if ((terms & TERM_LOCAL) != 0) radiosity += local_radiosity(position.xyz - box_centre_mm.xyz, n);
+  if ((terms & TERM_LOCAL) != 0) radiosity += local_radiosity(position.xyz - box_centre_mm.xyz, n, normal.w);
   if ((terms & TERM_GLOBAL) != 0) radiosity += global_radiosity(position.xyz, n);
   float exit_cosine = abs(dot(n, normalize(eye_mm.xyz - position.xyz)));
   float transmittance = fresnel_transmittance(mean_free_path_mm.a, exit_cosine);

@@ -10,7 +10,7 @@
 #include "render/gpu_mesh.h"
 #include "render/shading.h"
 #include "tests/gl/render/scenes.h"
-#include "tests/support/shared_meshes.h"
+#include "tests/support/meshes.h"
 
 namespace diaphane::render {
 namespace {
@@ -77,8 +77,9 @@ std::vector<float> read_layers(const gl::Texture& texture, uint32_t size_px) {
 }
 
 TEST(SelfOcclusion, AgreesWithDepthOnTheBunny) {
-  const auto bunny = tests::load_shared_mesh("bunny_closed_72k.ply", 20);
+  auto bunny = diaphane::testing::read_mesh(diaphane::testing::shared_path("data/meshes/bunny_closed_72k.ply"));
   if (!bunny.has_value()) GTEST_SKIP() << "../shared/data/meshes is not there: no bunny to ask";
+  diaphane::testing::scale_to(*bunny, 20);
   const auto context = gl::Context::create({});
   ASSERT_TRUE(context.ok()) << context.status();
   const gl::ShaderLibrary library;
@@ -87,7 +88,7 @@ TEST(SelfOcclusion, AgreesWithDepthOnTheBunny) {
   const auto ask = gl::Program::link("ask", *library.source("fullscreen.vert"), *library.expand(kAskEveryFace));
   ASSERT_TRUE(ask.ok()) << ask.status();
 
-  const auto scene = make_scene({bunny->positions, bunny->triangles}, "marble");
+  const auto scene = make_scene({bunny->positions_mm, bunny->triangles}, "marble");
   add_point_light(*scene, {10, 30, 40}, 1000);
   StageClock clock;
   GpuMesh mesh;

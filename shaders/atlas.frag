@@ -16,10 +16,10 @@ void main() {
   vec3 n = normalize(world_normal);
   vec3 e = vec3(0.0);
   for (int i = 0; i < lights.length(); ++i) {
-    vec3 to_light = lights[i].position_mm.xyz - world_mm;
-    float squared = max(dot(to_light, to_light), 1e-12);
-    float cosine = max(dot(n, to_light) * inversesqrt(squared), 0.0);
-    e += lights[i].intensity_w_sr.rgb * (cosine * fresnel_transmittance(mean_free_path_mm.a, cosine) / squared);
+    vec3 towards;
+    vec3 arriving = arriving_light(lights[i], world_mm, towards);
+    float cosine = max(dot(n, towards), 0.0);
+    e += arriving * (cosine * fresnel_transmittance(mean_free_path_mm.a, cosine));
   }
   int axis = face_axis(face);
   vec3 from_centre = world_mm - box_centre_mm.xyz;

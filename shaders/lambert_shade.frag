@@ -16,9 +16,9 @@ void main() {
   vec3 n = texelFetch(gbuffer_normal, pixel, 0).xyz;
   vec3 e = vec3(0.0);
   for (int i = 0; i < lights.length(); ++i) {
-    vec3 to_light = lights[i].position_mm.xyz - position.xyz;
-    float squared = max(dot(to_light, to_light), 1e-12);
-    e += lights[i].intensity_w_sr.rgb * (max(dot(n, to_light), 0.0) * inversesqrt(squared) / squared);
+    vec3 towards;
+    vec3 arriving = arriving_light(lights[i], position.xyz, towards);
+    e += arriving * max(dot(n, towards), 0.0);
   }
   radiance = vec4(radiance_scale / PI * total_reflectance.rgb * e, 1.0);
 }

@@ -57,16 +57,25 @@ vec3 local_radiosity(vec3 from_centre_mm, vec3 n, float facet_sine) {
   return vec3(0.0);
 }
 
+// How far light has come within reach of the body. The paper's S is the distance to a point light; parallel light has
+// none, and takes the way through the body's box (ours).
+float travelled_mm(Light light, vec3 position_mm, vec3 towards) {
+  if (light.power.a == 0.0) return length(light.position_mm.xyz - position_mm);
+  vec3 walls_mm = box_centre_mm.xyz + 0.5 * sign(towards) * box_extent_mm.xyz - position_mm;
+  vec3 ways_mm = walls_mm / mix(towards, vec3(1e-9), equal(towards, vec3(0.0)));
+  return min(min(abs(ways_mm.x), abs(ways_mm.y)), abs(ways_mm.z));
+}
+
 // Eqs. 9 and 10 with zs = zr, an area of π l², and a distance of at least l; E with |N·ω| at the point itself.
 vec3 global_radiosity(vec3 position_mm, vec3 n) {
   vec3 sum = vec3(0.0);
   vec3 l = mean_free_path_mm.rgb;
   for (int i = 0; i < lights.length(); ++i) {
-    vec3 to_light = lights[i].position_mm.xyz - position_mm;
-    float squared = max(dot(to_light, to_light), 1e-12);
-    float cosine = abs(dot(n, to_light)) * inversesqrt(squared);
-    vec3 e = lights[i].intensity_w_sr.rgb * (cosine * fresnel_transmittance(mean_free_path_mm.a, cosine) / squared);
-    vec3 s = max(vec3(sqrt(squared)), l);
+    vec3 towards;
+    vec3 arriving = arriving_light(lights[i], position_mm, towards);
+    float cosine = abs(dot(n, towards));
+    vec3 e = arriving * (cosine * fresnel_transmittance(mean_free_path_mm.a, cosine));
+    vec3 s = max(vec3(travelled_mm(lights[i], position_mm, towards)), l);
     vec3 optical = effective_transport_mm.rgb * s;
     vec3 ratio = l / s;
     sum += e * reduced_albedo.rgb * 0.25 * ratio * ratio * ratio * (1.0 + optical) * exp(-optical);

@@ -17,7 +17,7 @@ BoxUniforms fit_box(const geometry::Bounds& bounds_mm, uint32_t face_size_px);
 /// Everything that the atlas's texels are made of. Equal keys make equal texels.
 struct AtlasKey {
   uint64_t mesh_generation = 0;
-  std::vector<PointLightStorage> lights;
+  std::vector<LightStorage> lights;
   float refractive_index = 1;
   uint32_t face_size_px = 0;
   bool operator==(const AtlasKey&) const = default;

@@ -66,7 +66,7 @@ class GlRenderer final : public FrameRenderer {
 
   void forget_orphans();
   void bound_atlases(const std::vector<Drawn>& in_use);
-  void update_atlas(const Drawn& drawn, const std::vector<PointLightStorage>& lights, uint32_t face_size_px,
+  void update_atlas(const Drawn& drawn, const std::vector<LightStorage>& lights, uint32_t face_size_px,
                     StageClock& clock);
   absl::Status draw_tiles(const FrameRequest& request, const std::vector<Drawn>& meshes, const ViewUniforms& view,
                           const std::atomic<bool>& cancelled, StageClock& clock, uint8_t* picture);
@@ -93,7 +93,7 @@ void GlRenderer::bound_atlases(const std::vector<Drawn>& in_use) {
   }
 }
 
-void GlRenderer::update_atlas(const Drawn& drawn, const std::vector<PointLightStorage>& lights, uint32_t face_size_px,
+void GlRenderer::update_atlas(const Drawn& drawn, const std::vector<LightStorage>& lights, uint32_t face_size_px,
                               StageClock& clock) {
   AtlasKey key{drawn.gpu->generation(), lights, drawn.material.refractive_index, face_size_px};
   if (drawn.gpu->atlas.has_value() && drawn.gpu->atlas->key() == key) {
@@ -182,7 +182,7 @@ absl::StatusOr<Frame> GlRenderer::render(const FrameRequest& request, const std:
   }
   geometry::Bounds bounds = meshes.front().gpu->bounds_mm();
   for (const Drawn& drawn : meshes) bounds = enclose(bounds, drawn.gpu->bounds_mm());
-  const std::vector<PointLightStorage> lights = lights_of(scene, bounds);
+  const std::vector<LightStorage> lights = lights_of(scene, bounds);
   shading_.bind(lights);
   if (request.settings.technique == Technique::kPaper) {
     for (const Drawn& drawn : meshes) {

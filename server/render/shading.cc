@@ -34,7 +34,7 @@ void Shading::bind_uniforms(GLuint binding, const gl::Buffer& buffer, const void
   glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer.id());
 }
 
-void Shading::bind(std::span<const PointLightStorage> lights) const {
+void Shading::bind(std::span<const LightStorage> lights) const {
   gl::upload(lights_, GL_SHADER_STORAGE_BUFFER, lights.data(), lights.size_bytes(), GL_STREAM_DRAW);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, STORAGE_LIGHTS, lights_.id());
 }

@@ -20,7 +20,7 @@ class Shading {
   void bind(const ViewUniforms& view) const { bind_uniforms(UNIFORMS_VIEW, view_, &view, sizeof view); }
   void bind(const MaterialUniforms& m) const { bind_uniforms(UNIFORMS_MATERIAL, material_, &m, sizeof m); }
   void bind(const BoxUniforms& box) const { bind_uniforms(UNIFORMS_BOX, box_, &box, sizeof box); }
-  void bind(std::span<const PointLightStorage> lights) const;
+  void bind(std::span<const LightStorage> lights) const;
 
   const gl::Program& atlas() const { return atlas_program_; }
   const gl::Program& gbuffer() const { return gbuffer_program_; }

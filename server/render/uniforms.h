@@ -46,12 +46,15 @@ struct PaperUniforms {
 };
 static_assert(sizeof(PaperUniforms) == 16);
 
-struct PointLightStorage {
-  glm::vec4 position_mm{0};
-  glm::vec4 intensity_w_sr{0};
-  bool operator==(const PointLightStorage&) const = default;
+/// A light of any kind, in millimetres and world axes.
+struct LightStorage {
+  glm::vec4 position_mm{0};     ///< xyz; or the unit direction to a directional light
+  glm::vec4 power{0};           ///< rgb: W·sr⁻¹, or W·mm⁻² of a directional light; a: 1 directional, else 0
+  glm::vec4 axis{0, 0, 0, -2};  ///< xyz: unit axis of a spot's cone; a: cosine of its outer angle, −2 without a cone
+  glm::vec4 shape{0};           ///< x: 1/(cosine inner − cosine outer); y: radius in mm
+  bool operator==(const LightStorage&) const = default;
 };
-static_assert(sizeof(PointLightStorage) == 32);
+static_assert(sizeof(LightStorage) == 64);
 
 /// The paper gives one mean free path: the kernel's width takes the mean of the three channels'.
 inline MaterialUniforms material_uniforms(const optics::Coefficients& material) {

@@ -21,14 +21,30 @@ struct Material {
   optics::Coefficients coefficients;
 };
 
+/// Shines in all directions; irradiance falls with the square of the distance in millimetres.
 struct PointLight {
-  glm::vec3 position{0};         ///< scene units
+  glm::vec3 position{0};        ///< scene units
   glm::vec3 intensity_w_sr{0};  ///< W·sr⁻¹
+  float radius_mm = 0;          ///< 0: hard shadows
+};
+
+/// Parallel light from far away.
+struct DirectionalLight {
+  glm::vec3 direction{0, -1, 0};  ///< in which the light travels; any length but none
+  glm::vec3 irradiance{0};        ///< W·mm⁻² on a surface that faces it
+};
+
+/// A point light within a cone: full within the inner angle, none beyond the outer one, smooth between.
+struct SpotLight {
+  PointLight point;
+  glm::vec3 direction{0, -1, 0};  ///< axis of the cone; any length but none
+  float inner_angle_deg = 20;     ///< from the axis, 0..90, at most the outer one
+  float outer_angle_deg = 30;     ///< from the axis, above 0, up to 90
 };
 
 struct Light {
   std::string name;  ///< scenes/{scene}/lights/{light}
-  std::variant<PointLight> kind;
+  std::variant<PointLight, DirectionalLight, SpotLight> kind;
 };
 
 struct Mesh {

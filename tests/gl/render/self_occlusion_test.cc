@@ -94,7 +94,7 @@ TEST(SelfOcclusion, AgreesWithDepthOnTheBunny) {
   GpuMesh mesh;
   mesh.update(*scene->meshes[0], 1, clock);
   shading->bind(material_uniforms(scene->materials[0].coefficients));
-  const PointLightStorage light{{10, 30, 40, 0}, {1000, 1000, 1000, 0}};
+  const LightStorage light{.position_mm = {10, 30, 40, 0}, .power = {1000, 1000, 1000, 0}};
   shading->bind(std::span(&light, 1));
 
   constexpr uint32_t kFine_px = 2048;

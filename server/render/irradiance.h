@@ -1,0 +1,40 @@
+// The light that enters a surface: E at triangles and vertices.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "geometry/shape.h"
+#include "geometry/topology.h"
+#include "render/shadow.h"
+#include "render/uniforms.h"
+
+namespace diaphane::render {
+
+/// E (RGB, W·mm⁻²) of all lights, Fresnel and clamped cosine included (paper Eq. 4).
+struct SurfaceIrradiance {
+  std::vector<glm::vec3> of_triangle;  ///< at centroids, with the renormalised mean of the vertex normals
+  std::vector<glm::vec3> of_vertex;
+};
+
+/// Computes E natively, spread over all cores; keeps its memory from call to call. One thread calls.
+class IrradianceStage {
+ public:
+  /// `shadows` null: every light is seen everywhere. A vertex sees of a light what its triangles see, by area.
+  const SurfaceIrradiance& run(const geometry::MeshTopology& topology, const geometry::PlacedShape& shape,
+                               std::span<const LightStorage> lights, float refractive_index,
+                               const ShadowScene* shadows);
+
+ private:
+  void cast_shadows(const geometry::MeshTopology& topology, const geometry::PlacedShape& shape,
+                    std::span<const LightStorage> lights, const ShadowScene& shadows);
+
+  SurfaceIrradiance irradiance_;
+  std::vector<glm::vec3> centroids_mm_;
+  std::vector<glm::vec3> facet_normals_;
+  std::vector<float> areas_;
+  std::vector<float> of_triangle_;  ///< visibility, [light][triangle]
+  std::vector<float> of_weld_;      ///< visibility, [light][weld]
+};
+
+}  // namespace diaphane::render

@@ -1,0 +1,80 @@
+#include "command_line.h"
+
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "CLI/CLI.hpp"
+#include "render_arguments.h"
+#include "render_command.h"
+#include "server_commands.h"
+
+namespace diaphane::cli {
+namespace {
+
+struct Commands {
+  CLI::App app{"Renders translucent objects on a Diaphane server."};
+  GlobalOptions global;
+  RenderArguments render_arguments;
+  std::string scene_id;
+  CLI::App* render = nullptr;
+  CLI::App* materials = nullptr;
+  CLI::App* info = nullptr;
+  CLI::App* scene_ls = nullptr;
+  CLI::App* scene_show = nullptr;
+  CLI::App* scene_rm = nullptr;
+
+  Commands() {
+    app.name("diaphane");
+    app.set_version_flag("--version", DIAPHANE_VERSION);
+    app.add_option("--server", global.server, "HOST:PORT or unix:PATH (default: a private server)")->type_name("ADDR");
+    app.add_flag("--json", global.json, "Machine-readable output");
+    app.add_flag("-v,--verbose", global.verbose, "Say more on stderr");
+    app.require_subcommand(1);
+
+    render = app.add_subcommand("render", "Render meshes, or a scene file, to an image");
+    add_render_options(*render, render_arguments);
+    materials = app.add_subcommand("materials", "List the material presets");
+    info = app.add_subcommand("info", "Say what the server is, and what it allows");
+    CLI::App* scene = app.add_subcommand("scene", "Look after the scenes of a running server");
+    scene->require_subcommand(1);
+    scene_ls = scene->add_subcommand("ls", "List them");
+    scene_show = scene->add_subcommand("show", "Show one and all that is in it");
+    scene_rm = scene->add_subcommand("rm", "Delete one");
+    for (CLI::App* command : {scene_show, scene_rm}) command->add_option("ID", scene_id)->required();
+    for (CLI::App* command : {render, materials, info, scene, scene_ls, scene_show, scene_rm}) command->fallthrough();
+  }
+
+  absl::Status run() const {
+    if (render->parsed()) return run_render(global, render_arguments);
+    if (materials->parsed()) return run_materials(global);
+    if (info->parsed()) return run_info(global);
+    if (scene_ls->parsed()) return run_scene_ls(global);
+    if (scene_show->parsed()) return run_scene_show(global, scene_id);
+    return run_scene_rm(global, scene_id);
+  }
+};
+
+}  // namespace
+
+ExitCode run_command_line(int argc, const char* const* argv, std::stop_token stop) {
+  Commands commands;
+  commands.global.stop = std::move(stop);
+  try {
+    commands.app.parse(argc, argv);
+  } catch (const CLI::Success& request) {  // --help, --version
+    commands.app.exit(request);
+    return kExitOk;
+  } catch (const CLI::ParseError& error) {
+    print_note(std::string(error.what()) + " (see diaphane --help)");
+    return kExitUsage;
+  }
+  absl::Status status = commands.run();
+  if (status.ok() && std::fflush(stdout) != 0) {
+    status = with_exit_code(absl::DataLossError("stdout: cannot be written"), kExitFile);
+  }
+  if (!status.ok()) print_error(status);
+  return exit_code_of(status);
+}
+
+}  // namespace diaphane::cli

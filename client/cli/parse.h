@@ -1,0 +1,30 @@
+// Option values from text.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "diaphane/render_options.h"
+#include "diaphane/values.h"
+
+namespace diaphane::cli {
+
+/// Exactly `numbers.size()` finite numbers between commas. False, and nothing is written, for anything else.
+bool parse_numbers(std::string_view text, std::span<float> numbers);
+
+std::optional<Vec3> parse_vec3(std::string_view text);               ///< X,Y,Z
+std::optional<Rgb> parse_rgb(std::string_view text);                 ///< R,G,B
+std::optional<PointLight> parse_point_light(std::string_view text);  ///< X,Y,Z,R,G,B
+std::optional<Size> parse_size(std::string_view text);               ///< WxH, both above 0
+
+/// By the file's extension, in any case.
+std::optional<ImageFormat> format_of(const std::filesystem::path& path);
+
+/// The names, with " | " between them.
+std::string technique_names();
+std::string terms_names();
+
+}  // namespace diaphane::cli

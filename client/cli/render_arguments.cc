@@ -1,0 +1,148 @@
+#include "render_arguments.h"
+
+#include <cmath>
+#include <functional>
+
+#include "fmt/format.h"
+#include "parse.h"
+
+namespace diaphane::cli {
+namespace {
+
+// An option whose text `parse` turns into a value; `form` says what it must look like.
+template <typename Value>
+CLI::Option* add_parsed(CLI::App& command, const std::string& flag, const std::string& form, const std::string& help,
+                        std::optional<Value> (*parse)(std::string_view), std::function<void(Value)> take) {
+  return command
+      .add_option_function<std::string>(
+          flag,
+          [=](const std::string& text) {
+            const std::optional<Value> value = parse(text);
+            if (!value) throw CLI::ValidationError(flag, fmt::format("must be {}, got '{}'", form, text));
+            take(*value);
+          },
+          help)
+      ->type_name(form);
+}
+
+template <typename Value>
+CLI::Option* add_parsed(CLI::App& command, const std::string& flag, const std::string& form, const std::string& help,
+                        std::optional<Value> (*parse)(std::string_view), std::optional<Value>& value) {
+  return add_parsed<Value>(command, flag, form, help, parse, [&value](Value parsed) { value = parsed; });
+}
+
+std::optional<float> parse_number(std::string_view text) {
+  float number = 0;
+  if (!parse_numbers(text, {&number, 1})) return std::nullopt;
+  return number;
+}
+
+std::optional<double> parse_above_zero(std::string_view text) {
+  const std::optional<float> number = parse_number(text);
+  if (!number || *number <= 0) return std::nullopt;
+  return *number;
+}
+
+// 0 means "not given" in the contract, and would be taken for the default.
+std::optional<float> parse_index(std::string_view text) {
+  const std::optional<float> number = parse_number(text);
+  if (!number || *number == 0) return std::nullopt;
+  return number;
+}
+
+std::optional<uint32_t> parse_count(std::string_view text) {
+  const std::optional<Size> size = parse_size(fmt::format("{}x1", text));
+  if (!size) return std::nullopt;
+  return size->width_px;
+}
+
+std::optional<Technique> parse_technique(std::string_view text) {
+  for (const NamedTechnique& entry : kTechniques) {
+    if (entry.name == text) return entry.technique;
+  }
+  return std::nullopt;
+}
+
+std::optional<Terms> parse_terms(std::string_view text) {
+  for (const NamedTerms& entry : kTerms) {
+    if (entry.name == text) return entry.terms;
+  }
+  return std::nullopt;
+}
+
+void add_material_options(CLI::App& command, RenderArguments& arguments) {
+  auto* material = command.add_option("--material", arguments.preset, "Material preset; see 'diaphane materials'");
+  material->type_name("NAME");
+  auto* absorption =
+      add_parsed(command, "--absorption", "R,G,B", "Absorption in mm^-1", parse_rgb, arguments.absorption_mm);
+  auto* scattering = add_parsed(command, "--scattering", "R,G,B", "Reduced scattering in mm^-1", parse_rgb,
+                                arguments.reduced_scattering_mm);
+  absorption->excludes(material)->needs(scattering);
+  scattering->excludes(material)->needs(absorption);
+  add_parsed(command, "--ior", "N", "Refractive index, 1 to 3", parse_index, arguments.refractive_index);
+}
+
+void add_camera_options(CLI::App& command, RenderArguments& arguments) {
+  add_parsed(command, "--eye", "X,Y,Z", "Where the camera stands (default: framed on the meshes)", parse_vec3,
+             arguments.eye);
+  add_parsed(command, "--target", "X,Y,Z", "What it looks at", parse_vec3, arguments.target);
+  add_parsed(command, "--up", "X,Y,Z", "Which way is up, also for --height-mm (default: 0,1,0)", parse_vec3,
+             arguments.up);
+  add_parsed(command, "--fov", "DEG", "Full vertical field of view (default: 30)", parse_number, arguments.fov_y_deg);
+}
+
+void add_technique_options(CLI::App& command, RenderArguments& arguments) {
+  add_parsed(command, "--technique", technique_names(), "How light inside the body is found", parse_technique,
+             arguments.technique);
+  add_parsed(command, "--terms", terms_names(), "Which part of the paper technique's answer", parse_terms,
+             arguments.terms);
+  add_parsed(command, "--kernel", "N", "Taps a side of the paper technique's kernel, 3 to 6", parse_count,
+             arguments.kernel_taps);
+  add_parsed(command, "--face-size", "N", "Edge of its cube faces in texels, 16 to 2048", parse_count,
+             arguments.face_size_px);
+  add_parsed(command, "--global-gain", "G", "Multiplies its global term", parse_number, arguments.global_gain);
+  add_parsed(command, "--exposure", "EV", "Stops; not applied to EXR", parse_number, arguments.exposure_ev);
+}
+
+}  // namespace
+
+void add_render_options(CLI::App& command, RenderArguments& arguments) {
+  auto* meshes = command.add_option("MESH", arguments.meshes, "Mesh files: .gltf, .glb, .obj, .ply");
+  auto* scene =
+      command.add_option("--scene", arguments.scene_file, "A scene file in place of meshes, materials, lights");
+  scene->type_name("FILE.json")->excludes(meshes);
+  command
+      .add_option_function<std::string>(
+          "-o,--output",
+          [&arguments](const std::string& path) {
+            const std::optional<ImageFormat> format = format_of(path);
+            if (!format) {
+              throw CLI::ValidationError("-o", fmt::format("must end in .png, .jpg, .jpeg or .exr, got '{}'", path));
+            }
+            arguments.output = path;
+            arguments.format = *format;
+          },
+          "The image: .png, .jpg or .exr (linear radiance)")
+      ->type_name("FILE")
+      ->required();
+  add_parsed(command, "--size", "WxH", "Pixels (default: 1280x720)", parse_size, arguments.size);
+  add_technique_options(command, arguments);
+  add_material_options(command, arguments);
+  auto* unit = add_parsed(command, "--mm-per-unit", "S", "Size of a mesh unit in millimetres, above 0",
+                          parse_above_zero, arguments.millimetres_per_unit);
+  auto* height = add_parsed(command, "--height-mm", "H", "Height along the up vector in millimetres, above 0",
+                            parse_above_zero, arguments.height_mm);
+  height->excludes(unit);
+  add_camera_options(command, arguments);
+  add_parsed<PointLight>(command, "--point-light", "X,Y,Z,R,G,B",
+                         "A point light: mesh units, then W/sr; may be repeated (default: one key light)",
+                         parse_point_light, [&arguments](PointLight light) { arguments.point_lights.push_back(light); })
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+  for (const char* flag :
+       {"--material", "--absorption", "--scattering", "--ior", "--mm-per-unit", "--height-mm", "--point-light"}) {
+    scene->excludes(command.get_option(flag));
+  }
+}
+
+}  // namespace diaphane::cli

@@ -1,0 +1,49 @@
+// The render command's options, as they were given.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "CLI/CLI.hpp"
+#include "diaphane/render_options.h"
+#include "diaphane/values.h"
+
+namespace diaphane::cli {
+
+struct RenderArguments {
+  std::vector<std::string> meshes;
+  std::string scene_file;
+  std::string output;
+  ImageFormat format = ImageFormat::kPng;  ///< by the output's extension
+  std::optional<Size> size;
+
+  std::optional<Technique> technique;
+  std::optional<Terms> terms;
+  std::optional<uint32_t> kernel_taps;
+  std::optional<uint32_t> face_size_px;
+  std::optional<float> global_gain;
+  std::optional<float> exposure_ev;
+
+  std::optional<std::string> preset;
+  std::optional<Rgb> absorption_mm;
+  std::optional<Rgb> reduced_scattering_mm;
+  std::optional<float> refractive_index;
+
+  std::optional<double> millimetres_per_unit;
+  std::optional<double> height_mm;
+
+  std::optional<Vec3> eye;
+  std::optional<Vec3> target;
+  std::optional<Vec3> up;
+  std::optional<float> fov_y_deg;
+
+  std::vector<PointLight> point_lights;
+};
+
+/// Declares the options on `command`; parsing fills `arguments`, which must live as long. What cannot be parsed, is
+/// missing or excludes another option is a CLI::ParseError that names the flag; ranges that the server knows are left
+/// to it.
+void add_render_options(CLI::App& command, RenderArguments& arguments);
+
+}  // namespace diaphane::cli

@@ -1,0 +1,117 @@
+#include "render_command.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diaphane/client.h"
+#include "fmt/format.h"
+#include "json.h"
+#include "output_file.h"
+#include "progress.h"
+#include "render_plan.h"
+#include "session.h"
+#include "status.h"
+
+namespace diaphane::cli {
+namespace {
+
+// A preset with another refractive index is free coefficients to the server.
+absl::Status resolve_refractive_index(const Client& client, RenderPlan* plan) {
+  if (!plan->refractive_index) return absl::OkStatus();
+  absl::StatusOr<std::vector<MaterialPreset>> presets = client.material_presets();
+  if (!presets.ok()) return presets.status();
+  const std::string& name = std::get<std::string>(plan->materials.front().model);
+  for (MaterialPreset& preset : *presets) {
+    if (preset.name != name) continue;
+    preset.coefficients.refractive_index = *plan->refractive_index;
+    plan->materials.front().model = preset.coefficients;
+    return absl::OkStatus();
+  }
+  return absl::NotFoundError(fmt::format("--material: must be a preset (see 'diaphane materials'), got '{}'", name));
+}
+
+absl::Status fill_scene(const Scene& scene, const RenderPlan& plan, Progress& progress) {
+  std::vector<MaterialHandle> materials;
+  for (const Material& material : plan.materials) {
+    absl::StatusOr<MaterialHandle> handle = scene.add_material(material);
+    if (!handle.ok()) return handle.status();
+    materials.push_back(*std::move(handle));
+  }
+  for (const PointLight& light : plan.lights) {
+    if (const auto handle = scene.add_light(light); !handle.ok()) return handle.status();
+  }
+  for (size_t i = 0; i < plan.meshes.size(); ++i) {
+    const MeshData& mesh = plan.meshes[i];
+    progress.step(
+        fmt::format("uploading mesh {} of {} ({} triangles)", i + 1, plan.meshes.size(), mesh.triangles.size() / 3));
+    const auto handle = scene.add_mesh(mesh, {.material = materials[plan.material_of_mesh[i]]});
+    if (!handle.ok()) return handle.status();
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<RenderedFrame> make_frame(const Client& client, RenderPlan* plan, Progress& progress) {
+  if (absl::Status status = resolve_refractive_index(client, plan); !status.ok()) return status;
+  const absl::StatusOr<Scene> scene =
+      client.create_scene({.display_name = plan->display_name, .millimetres_per_unit = plan->millimetres_per_unit});
+  if (!scene.ok()) return scene.status();
+  absl::StatusOr<RenderedFrame> frame = fill_scene(*scene, *plan, progress);
+  if (frame.status().ok()) {
+    progress.step(fmt::format("rendering {}x{}", plan->options.size.width_px, plan->options.size.height_px));
+    frame = scene->render(plan->options);
+  }
+  const absl::Status removed = scene->remove();
+  return frame.ok() && !removed.ok() ? removed : std::move(frame);
+}
+
+void report(const GlobalOptions& global, const RenderArguments& arguments, const RenderPlan& plan,
+            const RenderedFrame& frame) {
+  if (global.verbose) {
+    for (const StageTime& stage : frame.stages) {
+      print_note(fmt::format("{:<10} {:9.2f} ms{}", stage.stage, stage.milliseconds, stage.ran ? "" : "  (slept)"));
+    }
+  }
+  if (!global.json) {
+    fmt::print("{}\n", arguments.output);
+    return;
+  }
+  Json json{{"output", arguments.output},
+            {"content_type", frame.content_type},
+            {"bytes", frame.image.size()},
+            {"width_px", frame.size.width_px},
+            {"height_px", frame.size.height_px},
+            {"millimetres_per_unit", plan.millimetres_per_unit},
+            {"camera", to_json(plan.options.camera)},
+            {"path", frame.path},
+            {"stages", Json::array()}};
+  for (const StageTime& stage : frame.stages) json["stages"].push_back(to_json(stage));
+  print_json(json);
+}
+
+}  // namespace
+
+absl::Status run_render(const GlobalOptions& global, const RenderArguments& arguments) {
+  if (arguments.meshes.empty() && arguments.scene_file.empty()) {
+    return usage_error("MESH", "give at least one mesh file, or --scene");
+  }
+  if (absl::Status status = check_writable(arguments.output); !status.ok()) return status;
+  Progress progress;
+  progress.step("reading");
+  absl::StatusOr<RenderPlan> plan = plan_render(arguments);
+  progress.clear();
+  if (!plan.ok()) return plan.status();
+  for (const std::string& note : plan->notes) print_note(note);
+
+  progress.step(global.server.empty() ? "starting a server" : "connecting");
+  const absl::StatusOr<Session> session = open_session(global);
+  if (!session.ok()) return session.status();
+  const absl::StatusOr<RenderedFrame> frame = make_frame(session->client, &*plan, progress);
+  progress.clear();
+  if (!frame.ok()) return frame.status();
+  if (absl::Status status = write_file(arguments.output, frame->image); !status.ok()) return status;
+  report(global, arguments, *plan, *frame);
+  return absl::OkStatus();
+}
+
+}  // namespace diaphane::cli

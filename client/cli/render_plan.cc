@@ -1,0 +1,124 @@
+#include "render_plan.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "diaphane/framing.h"
+#include "diaphane/readers.h"
+#include "diaphane/scene_file.h"
+#include "fmt/format.h"
+#include "placement.h"
+#include "status.h"
+
+namespace diaphane::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Matrix = std::array<float, 16>;
+
+Matrix multiply(const Matrix& a, const Matrix& b) {
+  Matrix product{};
+  for (size_t column = 0; column < 4; ++column) {
+    for (size_t row = 0; row < 4; ++row) {
+      for (size_t i = 0; i < 4; ++i) product[4 * column + row] += a[4 * i + row] * b[4 * column + i];
+    }
+  }
+  return product;
+}
+
+absl::Status read_meshes(const fs::path& path, const Matrix& scene_from_file, size_t material, RenderPlan* plan,
+                         FileUnits* units) {
+  absl::StatusOr<LoadedFile> file = read_mesh_file(path);
+  if (!file.ok()) return with_exit_code(file.status(), kExitFile);
+  units->add(file->millimetres_per_unit);
+  for (const std::string& warning : file->warnings)
+    plan->notes.push_back(fmt::format("{}: {}", path.string(), warning));
+  for (MeshData& mesh : file->meshes) {
+    mesh.scene_from_mesh = multiply(scene_from_file, mesh.scene_from_mesh);
+    plan->meshes.push_back(std::move(mesh));
+    plan->material_of_mesh.push_back(material);
+  }
+  return absl::OkStatus();
+}
+
+Material material_of(const RenderArguments& arguments) {
+  if (!arguments.absorption_mm) return {arguments.preset.value_or(kDefaultPreset)};
+  Coefficients coefficients{*arguments.absorption_mm, *arguments.reduced_scattering_mm};
+  if (arguments.refractive_index) coefficients.refractive_index = *arguments.refractive_index;
+  return {coefficients};
+}
+
+absl::Status take_arguments(const RenderArguments& arguments, RenderPlan* plan, FileUnits* units) {
+  plan->materials = {material_of(arguments)};
+  if (!arguments.absorption_mm) plan->refractive_index = arguments.refractive_index;
+  plan->lights = arguments.point_lights;
+  for (const std::string& mesh : arguments.meshes) {
+    if (absl::Status status = read_meshes(mesh, MeshData().scene_from_mesh, 0, plan, units); !status.ok())
+      return status;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status take_scene_file(SceneFile scene, RenderPlan* plan, FileUnits* units) {
+  plan->display_name = scene.display_name;
+  units->stated = scene.millimetres_per_unit;
+  for (SceneFile::NamedMaterial& named : scene.materials) plan->materials.push_back(std::move(named.material));
+  plan->lights = std::move(scene.lights);
+  plan->options.settings = scene.settings;
+  if (scene.size) plan->options.size = *scene.size;
+  std::optional<size_t> default_material;
+  for (const SceneFile::MeshFile& mesh : scene.meshes) {
+    if (!mesh.material && !default_material) {
+      default_material = plan->materials.size();
+      plan->materials.emplace_back();
+    }
+    const size_t material = mesh.material ? *mesh.material : *default_material;
+    if (absl::Status status = read_meshes(mesh.path, mesh.scene_from_mesh, material, plan, units); !status.ok()) {
+      return status;
+    }
+  }
+  return absl::OkStatus();
+}
+
+// Options given on the command line win over the scene file's.
+void take_settings(const RenderArguments& arguments, RenderOptions* options) {
+  options->format = arguments.format;
+  RenderSettings& settings = options->settings;
+  if (arguments.size) options->size = *arguments.size;
+  if (arguments.technique) settings.technique = *arguments.technique;
+  if (arguments.terms) settings.paper.terms = *arguments.terms;
+  if (arguments.kernel_taps) settings.paper.kernel_taps = *arguments.kernel_taps;
+  if (arguments.face_size_px) settings.paper.face_size_px = *arguments.face_size_px;
+  if (arguments.global_gain) settings.paper.global_gain = *arguments.global_gain;
+  if (arguments.exposure_ev) settings.exposure_ev = *arguments.exposure_ev;
+}
+
+}  // namespace
+
+absl::StatusOr<RenderPlan> plan_render(const RenderArguments& arguments) {
+  RenderPlan plan;
+  FileUnits units;
+  std::optional<Camera> camera;
+  if (arguments.scene_file.empty()) {
+    if (absl::Status status = take_arguments(arguments, &plan, &units); !status.ok()) return status;
+  } else {
+    absl::StatusOr<SceneFile> scene = read_scene_file(arguments.scene_file);
+    if (!scene.ok()) return with_exit_code(scene.status(), kExitFile);
+    camera = scene->camera;
+    if (absl::Status status = take_scene_file(*std::move(scene), &plan, &units); !status.ok()) return status;
+  }
+  take_settings(arguments, &plan.options);
+
+  const absl::StatusOr<Bounds> bounds = bounds_of(plan.meshes);
+  if (!bounds.ok()) return with_exit_code(bounds.status(), kExitFile);
+  plan.options.camera = choose_camera(arguments, camera, *bounds, plan.options.size);
+  absl::StatusOr<Unit> unit = choose_unit(arguments, units, plan.meshes, plan.options.camera.up);
+  if (!unit.ok()) return unit.status();
+  plan.millimetres_per_unit = unit->millimetres_per_unit;
+  if (!unit->note.empty()) plan.notes.push_back(std::move(unit->note));
+  if (plan.lights.empty()) plan.lights = {key_light(*bounds, plan.options.camera, plan.millimetres_per_unit)};
+  return plan;
+}
+
+}  // namespace diaphane::cli

@@ -1,0 +1,33 @@
+// Everything that a render needs from this machine, read and checked before any server is asked.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "diaphane/mesh_data.h"
+#include "diaphane/render_options.h"
+#include "diaphane/values.h"
+#include "render_arguments.h"
+
+namespace diaphane::cli {
+
+struct RenderPlan {
+  std::string display_name;
+  std::vector<MeshData> meshes;
+  std::vector<size_t> material_of_mesh;  ///< into `materials`, one per mesh
+  std::vector<Material> materials;
+  std::optional<float> refractive_index;  ///< in place of that of the only material, a preset
+  std::vector<PointLight> lights;         ///< at least one
+  double millimetres_per_unit = 1;
+  RenderOptions options;
+  std::vector<std::string> notes;  ///< one line each, for stderr
+};
+
+/// Reads the meshes, or the scene file and its meshes, and settles what was left open: size, camera, lights.
+///
+/// Errors: exit code kExitFile for files, kExitUsage for a --height-mm of meshes that have no height.
+absl::StatusOr<RenderPlan> plan_render(const RenderArguments& arguments);
+
+}  // namespace diaphane::cli

@@ -1,0 +1,83 @@
+// What can be asked of a frame, and what comes back.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "diaphane/values.h"
+
+namespace diaphane {
+
+enum class Technique {
+  kServerDefault = 0,
+  kPaper = 1,   ///< the two-pass cube map, as published
+  kLambert = 2  ///< opaque and matt, for comparison
+};
+
+/// The techniques that can be asked for by name.
+struct NamedTechnique {
+  std::string_view name;
+  Technique technique;
+};
+inline constexpr NamedTechnique kTechniques[] = {{"paper", Technique::kPaper}, {"lambert", Technique::kLambert}};
+
+/// Which part of the paper technique's answer is shown (its Fig. 9).
+enum class Terms { kBoth = 1, kLocal = 2, kGlobal = 3 };
+
+struct NamedTerms {
+  std::string_view name;
+  Terms terms;
+};
+inline constexpr NamedTerms kTerms[] = {{"local", Terms::kLocal}, {"global", Terms::kGlobal}, {"both", Terms::kBoth}};
+
+struct PaperSettings {
+  Terms terms = Terms::kBoth;
+  uint32_t kernel_taps = 5;     ///< a side, 3..6
+  uint32_t face_size_px = 256;  ///< edge of a cube face in texels, 16..2048
+  float global_gain = 1;        ///< multiplies the global term, 0..1000
+};
+
+struct RenderSettings {
+  Technique technique = Technique::kServerDefault;
+  PaperSettings paper;
+  float exposure_ev = 0;  ///< stops, -32..32; multiplies radiance by 2^exposure_ev before sRGB, never in EXR
+};
+
+struct Size {
+  uint32_t width_px = 1280;  ///< 1..8192; the product at most ServerInfo::max_pixels
+  uint32_t height_px = 720;  ///< 1..8192
+};
+
+enum class ImageFormat {
+  kPng = 1,   ///< 8-bit sRGB with unassociated alpha, lossless
+  kJpeg = 2,  ///< 8-bit sRGB over black
+  kExr = 3    ///< linear outgoing radiance, W·mm⁻²·sr⁻¹, 32-bit float RGBA
+};
+
+struct RenderOptions {
+  Camera camera;
+  Size size;
+  RenderSettings settings;
+  ImageFormat format = ImageFormat::kPng;
+  uint32_t jpeg_quality = 90;  ///< 1..100
+};
+
+/// What one stage of the server did for a frame.
+struct StageTime {
+  std::string stage;
+  double milliseconds = 0;
+  bool ran = false;  ///< false: its inputs had not changed
+};
+
+struct RenderedFrame {
+  std::string image;         ///< the encoded file's bytes
+  std::string content_type;  ///< image/png, image/jpeg or image/x-exr
+  uint64_t scene_revision = 0;
+  Size size;
+  std::vector<StageTime> stages;
+  std::string path;  ///< the code path that made the pixels; the same path makes the same bytes
+};
+
+}  // namespace diaphane

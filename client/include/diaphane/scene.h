@@ -1,0 +1,139 @@
+// A scene on a server: meshes, their materials, lights, and frames of them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "diaphane/mesh_data.h"
+#include "diaphane/render_options.h"
+#include "diaphane/values.h"
+
+namespace diaphane {
+
+class Client;
+
+namespace internal {
+class Connection;
+}  // namespace internal
+
+/// Names of things in a scene, as the server chose them. Plain values.
+struct MaterialHandle {
+  std::string name;  ///< scenes/{scene}/materials/{material}
+};
+struct LightHandle {
+  std::string name;  ///< scenes/{scene}/lights/{light}
+};
+struct MeshHandle {
+  std::string name;  ///< scenes/{scene}/meshes/{mesh}
+};
+
+struct SceneInfo {
+  std::string name;  ///< scenes/{scene}
+  std::string display_name;
+  double millimetres_per_unit = 1;
+  uint64_t revision = 0;  ///< grows with every change of the scene or of anything in it
+  uint32_t mesh_count = 0;
+  uint32_t material_count = 0;
+  uint32_t light_count = 0;
+};
+
+struct MaterialInfo {
+  MaterialHandle handle;
+  Material material;
+  Coefficients resolved;  ///< the coefficients in force
+};
+
+struct LightInfo {
+  LightHandle handle;
+  PointLight light;
+};
+
+struct MeshInfo {
+  MeshHandle handle;
+  MaterialHandle material;
+  std::array<float, 16> scene_from_mesh{};  ///< column-major
+  uint32_t vertex_count = 0;
+  uint32_t triangle_count = 0;
+  bool has_normals = false;  ///< given ones are in force; else they are computed
+  uint64_t positions_revision = 0;
+};
+
+/// A scene and all that is in it, read by several calls: not one moment's state while others change the scene.
+struct SceneDescription {
+  SceneInfo scene;
+  std::vector<MaterialInfo> materials;
+  std::vector<LightInfo> lights;
+  std::vector<MeshInfo> meshes;
+};
+
+struct MeshOptions {
+  MaterialHandle material;  ///< of the same scene; must be given
+};
+
+struct MeshUpdate {
+  std::optional<MaterialHandle> material;
+  std::optional<std::array<float, 16>> scene_from_mesh;  ///< column-major, affine, invertible
+};
+
+/// A handle to a scene. A copy is another handle to the same scene; all members may be called from any number of
+/// threads at once. Dropping a handle leaves the scene on the server.
+///
+/// Errors: as for Client, and NOT_FOUND once the scene, or the thing that a handle names, is gone. A call that fails
+/// changed nothing. Members that change something return the scene's new revision.
+class Scene {
+ public:
+  /// scenes/{scene}
+  const std::string& name() const;
+
+  absl::StatusOr<MaterialHandle> add_material(const Material& material) const;
+  absl::StatusOr<uint64_t> update_material(const MaterialHandle& handle, const Material& material) const;
+  /// Errors: FAILED_PRECONDITION while a mesh uses it.
+  absl::StatusOr<uint64_t> remove_material(const MaterialHandle& handle) const;
+
+  absl::StatusOr<LightHandle> add_light(const PointLight& light) const;
+  absl::StatusOr<uint64_t> update_light(const LightHandle& handle, const PointLight& light) const;
+  absl::StatusOr<uint64_t> remove_light(const LightHandle& handle) const;
+
+  /// Uploads a mesh, its scene_from_mesh included, in chunks of at most 1 MiB.
+  ///
+  /// Errors: INVALID_ARGUMENT no triangle, an index past the last vertex, a position that is not finite, normals that
+  /// are neither none nor one per position; RESOURCE_EXHAUSTED past a limit of ServerInfo.
+  absl::StatusOr<MeshHandle> add_mesh(const MeshData& mesh, const MeshOptions& options) const;
+
+  /// Changes what `update` gives; it must give at least one.
+  absl::StatusOr<uint64_t> update_mesh(const MeshHandle& handle, const MeshUpdate& update) const;
+
+  /// Replaces every position of a mesh at once: as many as it has vertices, in mesh units. `normals` is empty, and the
+  /// server computes them from now on, or one per position.
+  absl::StatusOr<uint64_t> update_positions(const MeshHandle& handle, std::span<const Vec3> positions,
+                                            std::span<const Vec3> normals = {}) const;
+  absl::StatusOr<uint64_t> remove_mesh(const MeshHandle& handle) const;
+
+  /// The scene and all that is in it.
+  absl::StatusOr<SceneDescription> describe() const;
+
+  /// One frame of the newest revision: it shows every change that returned before this call.
+  ///
+  /// Errors: FAILED_PRECONDITION no mesh; INVALID_ARGUMENT camera, size or settings out of range; RESOURCE_EXHAUSTED
+  /// the server's render queue is full.
+  absl::StatusOr<RenderedFrame> render(const RenderOptions& options = {}) const;
+
+  /// Deletes the scene and all that is in it. Runs even once ClientOptions::stop was requested.
+  absl::Status remove() const;
+
+ private:
+  friend class Client;
+  Scene(std::shared_ptr<internal::Connection> connection, std::string name);
+
+  std::shared_ptr<internal::Connection> connection_;
+  std::string name_;
+};
+
+}  // namespace diaphane

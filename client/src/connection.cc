@@ -1,0 +1,65 @@
+#include "connection.h"
+
+#include <algorithm>
+#include <charconv>
+#include <random>
+
+#include "fmt/format.h"
+#include "grpcpp/create_channel.h"
+#include "grpcpp/security/credentials.h"
+#include "grpcpp/support/channel_arguments.h"
+
+namespace diaphane::internal {
+namespace {
+
+constexpr std::chrono::milliseconds kCleanUpTimeout{10'000};
+
+grpc::ChannelArguments channel_arguments() {
+  grpc::ChannelArguments arguments;
+  arguments.SetMaxReceiveMessageSize(-1);  // a frame may take gigabytes, and was asked for
+  arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
+  arguments.SetInt(GRPC_ARG_ENABLE_RETRIES, 0);  // run_with_retries knows what may be repeated
+  arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
+  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1'000);
+  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1'000);
+  return arguments;
+}
+
+}  // namespace
+
+absl::Status Connection::check_address(std::string_view address) {
+  const auto refuse = [&] {
+    return absl::InvalidArgumentError(fmt::format("server address: must be HOST:PORT or unix:PATH, got '{}'", address));
+  };
+  if (address.starts_with("unix:")) return address.size() > 5 ? absl::OkStatus() : refuse();
+  const size_t colon = address.rfind(':');
+  if (colon == std::string_view::npos || colon == 0) return refuse();
+  const std::string_view port = address.substr(colon + 1);
+  uint16_t number = 0;
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
+  if (error != std::errc() || end != port.data() + port.size() || number == 0) return refuse();
+  return absl::OkStatus();
+}
+
+Connection::Connection(const std::string& address, ClientOptions options) : options_(std::move(options)) {
+  const auto channel = grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), channel_arguments());
+  scene_service_ = v1::SceneService::NewStub(channel);
+  render_service_ = v1::RenderService::NewStub(channel);
+  server_service_ = v1::ServerService::NewStub(channel);
+}
+
+absl::Status Connection::run(const std::function<grpc::Status(grpc::ClientContext&)>& attempt) const {
+  return run_with_retries({options_.call_timeout, options_.connect_timeout, options_.stop}, attempt);
+}
+
+absl::Status Connection::run_to_the_end(const std::function<grpc::Status(grpc::ClientContext&)>& attempt) const {
+  const auto call_timeout = std::min(options_.call_timeout, kCleanUpTimeout);
+  return run_with_retries({call_timeout, std::min(options_.connect_timeout, call_timeout), {}}, attempt);
+}
+
+std::string new_request_id() {
+  std::random_device random;
+  return fmt::format("{:08x}{:08x}{:08x}{:08x}", random(), random(), random(), random());
+}
+
+}  // namespace diaphane::internal

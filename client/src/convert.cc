@@ -1,0 +1,181 @@
+#include "convert.h"
+
+#include <utility>
+
+namespace diaphane::internal {
+namespace {
+
+// Both spellings of an enumeration have the same numbers.
+static_assert(int{v1::TECHNIQUE_UNSPECIFIED} == static_cast<int>(Technique::kServerDefault));
+static_assert(int{v1::TECHNIQUE_PAPER} == static_cast<int>(Technique::kPaper));
+static_assert(int{v1::TECHNIQUE_LAMBERT} == static_cast<int>(Technique::kLambert));
+static_assert(int{v1::TERMS_BOTH} == static_cast<int>(Terms::kBoth));
+static_assert(int{v1::TERMS_LOCAL} == static_cast<int>(Terms::kLocal));
+static_assert(int{v1::TERMS_GLOBAL} == static_cast<int>(Terms::kGlobal));
+static_assert(int{v1::IMAGE_FORMAT_PNG} == static_cast<int>(ImageFormat::kPng));
+static_assert(int{v1::IMAGE_FORMAT_JPEG} == static_cast<int>(ImageFormat::kJpeg));
+static_assert(int{v1::IMAGE_FORMAT_EXR} == static_cast<int>(ImageFormat::kExr));
+
+v1::Vec3 vec3(float x, float y, float z) {
+  v1::Vec3 message;
+  message.set_x(x);
+  message.set_y(y);
+  message.set_z(z);
+  return message;
+}
+
+}  // namespace
+
+v1::Vec3 to_proto(const Vec3& value) { return vec3(value.x, value.y, value.z); }
+
+v1::Vec3 to_proto(const Rgb& value) { return vec3(value.r, value.g, value.b); }
+
+v1::Coefficients to_proto(const Coefficients& coefficients) {
+  v1::Coefficients message;
+  *message.mutable_absorption_mm() = to_proto(coefficients.absorption_mm);
+  *message.mutable_reduced_scattering_mm() = to_proto(coefficients.reduced_scattering_mm);
+  message.set_refractive_index(coefficients.refractive_index);
+  return message;
+}
+
+v1::Camera to_proto(const Camera& camera) {
+  v1::Camera message;
+  *message.mutable_eye() = to_proto(camera.eye);
+  *message.mutable_target() = to_proto(camera.target);
+  *message.mutable_up() = to_proto(camera.up);
+  message.set_fov_y_deg(camera.fov_y_deg);
+  return message;
+}
+
+v1::Material to_proto(const Material& material) {
+  v1::Material message;
+  if (const auto* preset = std::get_if<std::string>(&material.model)) {
+    message.set_preset(*preset);
+  } else {
+    *message.mutable_coefficients() = to_proto(std::get<Coefficients>(material.model));
+  }
+  return message;
+}
+
+v1::Light to_proto(const PointLight& light) {
+  v1::Light message;
+  *message.mutable_point()->mutable_position() = to_proto(light.position);
+  *message.mutable_point()->mutable_intensity() = to_proto(light.intensity_w_sr);
+  return message;
+}
+
+v1::RenderSettings to_proto(const RenderSettings& settings) {
+  v1::RenderSettings message;
+  message.set_technique(static_cast<v1::Technique>(settings.technique));
+  message.mutable_paper()->set_terms(static_cast<v1::Terms>(settings.paper.terms));
+  message.mutable_paper()->set_kernel_taps(settings.paper.kernel_taps);
+  message.mutable_paper()->set_face_size_px(settings.paper.face_size_px);
+  message.mutable_paper()->set_global_gain(settings.paper.global_gain);
+  message.set_exposure_ev(settings.exposure_ev);
+  return message;
+}
+
+v1::RenderFrameRequest to_proto(const RenderOptions& options) {
+  v1::RenderFrameRequest message;
+  *message.mutable_camera() = to_proto(options.camera);
+  message.mutable_size()->set_width_px(options.size.width_px);
+  message.mutable_size()->set_height_px(options.size.height_px);
+  *message.mutable_settings() = to_proto(options.settings);
+  message.mutable_encoding()->set_format(static_cast<v1::ImageFormat>(options.format));
+  message.mutable_encoding()->set_jpeg_quality(options.jpeg_quality);
+  return message;
+}
+
+Vec3 vec3_from_proto(const v1::Vec3& message) { return {message.x(), message.y(), message.z()}; }
+
+Rgb rgb_from_proto(const v1::Vec3& message) { return {message.x(), message.y(), message.z()}; }
+
+Coefficients from_proto(const v1::Coefficients& message) {
+  Coefficients coefficients{rgb_from_proto(message.absorption_mm()), rgb_from_proto(message.reduced_scattering_mm())};
+  if (message.refractive_index() != 0) coefficients.refractive_index = message.refractive_index();
+  return coefficients;
+}
+
+Material from_proto(const v1::Material& message) {
+  if (message.has_coefficients()) return {from_proto(message.coefficients())};
+  return {message.preset()};
+}
+
+MaterialPreset from_proto(const v1::MaterialPreset& message) {
+  return {message.name(), from_proto(message.coefficients()), message.source()};
+}
+
+PointLight from_proto(const v1::Light& message) {
+  return {vec3_from_proto(message.point().position()), rgb_from_proto(message.point().intensity())};
+}
+
+SceneInfo from_proto(const v1::Scene& message) {
+  return {.name = message.name(),
+          .display_name = message.display_name(),
+          .millimetres_per_unit = message.millimetres_per_unit() == 0 ? 1 : message.millimetres_per_unit(),
+          .revision = message.revision(),
+          .mesh_count = message.mesh_count(),
+          .material_count = message.material_count(),
+          .light_count = message.light_count()};
+}
+
+MeshInfo from_proto(const v1::Mesh& message) {
+  MeshInfo mesh{.handle = {message.name()},
+                .material = {message.material()},
+                .scene_from_mesh = MeshData().scene_from_mesh,
+                .vertex_count = message.vertex_count(),
+                .triangle_count = message.triangle_count(),
+                .has_normals = message.has_normals(),
+                .positions_revision = message.positions_revision()};
+  if (message.scene_from_mesh_size() == static_cast<int>(mesh.scene_from_mesh.size())) {
+    for (int i = 0; i < message.scene_from_mesh_size(); ++i) mesh.scene_from_mesh[i] = message.scene_from_mesh(i);
+  }
+  return mesh;
+}
+
+RenderSettings from_proto(const v1::RenderSettings& message) {
+  RenderSettings settings{.technique = static_cast<Technique>(message.technique()),
+                          .exposure_ev = message.exposure_ev()};
+  const v1::PaperSettings& paper = message.paper();
+  if (paper.terms() != v1::TERMS_UNSPECIFIED) settings.paper.terms = static_cast<Terms>(paper.terms());
+  if (paper.kernel_taps() != 0) settings.paper.kernel_taps = paper.kernel_taps();
+  if (paper.face_size_px() != 0) settings.paper.face_size_px = paper.face_size_px();
+  if (paper.has_global_gain()) settings.paper.global_gain = paper.global_gain();
+  return settings;
+}
+
+RenderedFrame from_proto(v1::RenderFrameResponse&& message) {
+  RenderedFrame frame{.image = std::move(*message.mutable_image()),
+                      .content_type = message.content_type(),
+                      .scene_revision = message.scene_revision(),
+                      .size = {message.size().width_px(), message.size().height_px()},
+                      .path = message.path()};
+  for (const v1::StageTime& stage : message.stages()) {
+    frame.stages.push_back({stage.stage(), stage.milliseconds(), stage.ran()});
+  }
+  return frame;
+}
+
+ServerInfo from_proto(const v1::ServerInfo& message) {
+  const v1::Limits& limits = message.limits();
+  return {.version = message.version(),
+          .gl_renderer = message.gl_renderer(),
+          .gl_vendor = message.gl_vendor(),
+          .gl_version = message.gl_version(),
+          .software_rendering = message.software_rendering(),
+          .context_reason = message.context_reason(),
+          .max_pixels = limits.max_pixels(),
+          .max_vertices_per_mesh = limits.max_vertices_per_mesh(),
+          .max_triangles_per_mesh = limits.max_triangles_per_mesh(),
+          .max_scenes = limits.max_scenes(),
+          .max_meshes_per_scene = limits.max_meshes_per_scene(),
+          .max_lights_per_scene = limits.max_lights_per_scene(),
+          .max_materials_per_scene = limits.max_materials_per_scene(),
+          .max_mesh_bytes = limits.max_mesh_bytes(),
+          .max_chunk_bytes = limits.max_chunk_bytes(),
+          .max_queued_frames = limits.max_queued_frames(),
+          .image_formats = {message.image_formats().begin(), message.image_formats().end()},
+          .techniques = {message.techniques().begin(), message.techniques().end()}};
+}
+
+}  // namespace diaphane::internal

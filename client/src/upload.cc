@@ -1,0 +1,97 @@
+#include "upload.h"
+
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "fmt/format.h"
+#include "payload.h"
+
+namespace diaphane::internal {
+namespace {
+
+// The server counts what it receives; these are what it could not tell from the stream.
+absl::Status check_counts(std::span<const Vec3> positions, std::span<const Vec3> normals) {
+  if (positions.size() > std::numeric_limits<uint32_t>::max()) {
+    return absl::InvalidArgumentError(fmt::format("positions: must be at most 2^32 - 1, got {}", positions.size()));
+  }
+  if (!normals.empty() && normals.size() != positions.size()) {
+    return absl::InvalidArgumentError(
+        fmt::format("normals: must be none or one per position ({}), got {}", positions.size(), normals.size()));
+  }
+  return absl::OkStatus();
+}
+
+template <typename Request>
+absl::StatusOr<v1::MeshResponse> stream(
+    const Connection& connection,
+    std::unique_ptr<grpc::ClientWriter<Request>> (SceneStub::*method)(grpc::ClientContext*, v1::MeshResponse*),
+    const Request& header, const Payload& payload) {
+  v1::MeshResponse response;
+  const absl::Status status = connection.run([&](grpc::ClientContext& context) {
+    const auto writer = (connection.scene_service().get()->*method)(&context, &response);
+    // A write fails once the server has refused; Finish says why.
+    const bool open = writer->Write(header) && payload.for_each_chunk([&](std::string chunk) {
+      Request part;
+      part.set_chunk(std::move(chunk));
+      return writer->Write(part);
+    });
+    if (open) writer->WritesDone();
+    return writer->Finish();
+  });
+  if (!status.ok()) return status;
+  return response;
+}
+
+}  // namespace
+
+absl::StatusOr<MeshHandle> upload_mesh(const Connection& connection, const std::string& scene, const MeshData& mesh,
+                                       const MeshOptions& options) {
+  if (absl::Status status = check_counts(mesh.positions, mesh.normals); !status.ok()) return status;
+  if (mesh.triangles.size() % 3 != 0 || mesh.triangles.size() / 3 > std::numeric_limits<uint32_t>::max()) {
+    return absl::InvalidArgumentError(
+        fmt::format("triangles: must be three indices per triangle, at most 2^32 - 1 triangles, got {} indices",
+                    mesh.triangles.size()));
+  }
+  Payload payload;
+  payload.append(mesh.positions);
+  payload.append(mesh.normals);
+  payload.append(mesh.triangles);
+
+  v1::UploadMeshRequest request;
+  v1::MeshHeader& header = *request.mutable_header();
+  header.set_parent(scene);
+  header.mutable_mesh()->set_material(options.material.name);
+  header.mutable_mesh()->mutable_scene_from_mesh()->Assign(mesh.scene_from_mesh.begin(), mesh.scene_from_mesh.end());
+  header.set_vertex_count(static_cast<uint32_t>(mesh.positions.size()));
+  header.set_triangle_count(static_cast<uint32_t>(mesh.triangles.size() / 3));
+  header.set_has_normals(!mesh.normals.empty());
+  header.set_total_bytes(payload.total_bytes());
+  header.set_sha256(payload.sha256());
+  header.set_request_id(new_request_id());
+  const auto response = stream(connection, &SceneStub::UploadMesh, request, payload);
+  if (!response.ok()) return response.status();
+  return MeshHandle{response->mesh().name()};
+}
+
+absl::StatusOr<uint64_t> upload_positions(const Connection& connection, const MeshHandle& handle,
+                                          std::span<const Vec3> positions, std::span<const Vec3> normals) {
+  if (absl::Status status = check_counts(positions, normals); !status.ok()) return status;
+  Payload payload;
+  payload.append(positions);
+  payload.append(normals);
+
+  v1::UpdatePositionsRequest request;
+  v1::PositionsHeader& header = *request.mutable_header();
+  header.set_name(handle.name);
+  header.set_vertex_count(static_cast<uint32_t>(positions.size()));
+  header.set_has_normals(!normals.empty());
+  header.set_total_bytes(payload.total_bytes());
+  header.set_sha256(payload.sha256());
+  header.set_request_id(new_request_id());
+  const auto response = stream(connection, &SceneStub::UpdatePositions, request, payload);
+  if (!response.ok()) return response.status();
+  return response->scene_revision();
+}
+
+}  // namespace diaphane::internal

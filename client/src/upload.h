@@ -1,0 +1,22 @@
+// Streams of one header and then chunks.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "connection.h"
+#include "diaphane/mesh_data.h"
+#include "diaphane/scene.h"
+
+namespace diaphane::internal {
+
+/// Scene::add_mesh.
+absl::StatusOr<MeshHandle> upload_mesh(const Connection& connection, const std::string& scene, const MeshData& mesh,
+                                       const MeshOptions& options);
+
+/// Scene::update_positions.
+absl::StatusOr<uint64_t> upload_positions(const Connection& connection, const MeshHandle& handle,
+                                          std::span<const Vec3> positions, std::span<const Vec3> normals);
+
+}  // namespace diaphane::internal

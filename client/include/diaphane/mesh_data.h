@@ -1,0 +1,24 @@
+// A triangle mesh as plain arrays, whatever it was read from or made by.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "diaphane/values.h"
+
+namespace diaphane {
+
+/// A triangle mesh. Two vertices at bit-equal positions are the same place: the surface is connected there.
+struct MeshData {
+  std::string name;                 ///< for messages only; may be empty
+  std::vector<Vec3> positions;      ///< mesh units
+  std::vector<Vec3> normals;        ///< empty (computed by the server), or one per position, of any length
+  std::vector<uint32_t> triangles;  ///< three indices into `positions` per triangle, counter-clockwise from outside
+
+  /// Mesh units to scene units: column-major 4×4, affine and invertible.
+  std::array<float, 16> scene_from_mesh = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+};
+
+}  // namespace diaphane

@@ -12,26 +12,37 @@
 
 namespace diaphane {
 
-/// Bounds on what a file may make the reader allocate; counts are over the whole file.
+/// Bounds on what a file may make the reader allocate. Counts are over the whole file, instances counted each.
 struct ReadLimits {
-  uint64_t max_file_bytes = uint64_t{2} << 30;  ///< of the file itself and of each file that it refers to
-  uint64_t max_vertices = 50'000'000;
-  uint64_t max_triangles = 100'000'000;
-  uint64_t max_nodes = 100'000;  ///< of a glTF scene graph
+  uint64_t max_file_bytes = uint64_t{1} << 30;  ///< of the file together with every file that it refers to
+  uint64_t max_vertices = 20'000'000;
+  uint64_t max_triangles = 40'000'000;
+  uint32_t max_nodes = 100'000;  ///< nodes of a glTF scene graph; also the meshes that any file may hold
 };
 
 struct LoadedFile {
-  std::vector<MeshData> meshes;
+  std::vector<MeshData> meshes;                ///< at least one, each with at least one triangle
   std::optional<double> millimetres_per_unit;  ///< where the format states a unit (glTF: metres, so 1000)
   std::vector<std::string> warnings;           ///< one line each: what was left out, and why
 };
 
-/// Reads a glTF (.gltf, .glb), Wavefront OBJ (.obj) or PLY (.ply) file. Polygons come back as triangles; what cannot be
-/// a mesh is refused as a whole, never half read. Nothing outside the file's own folder is opened.
+/// Reads a mesh file: glTF 2.0 (.gltf, .glb), Wavefront OBJ, PLY, STL or OFF, told apart by content first and by
+/// extension second. What cannot be a mesh is refused as a whole, never half read.
 ///
-/// Errors, each one line that starts with the path: NOT_FOUND no such file; PERMISSION_DENIED it cannot be opened;
-/// INVALID_ARGUMENT it is not a well-formed file of a known kind, or holds no triangle; RESOURCE_EXHAUSTED it is past
-/// one of `limits`. Thread-safe.
+/// - Polygons come back as n-2 triangles: convex ones as a fan, concave ones clipped ear by ear.
+/// - A triangle that names one vertex twice is left out, with a warning.
+/// - OBJ, PLY, OFF: one mesh; vertex i is the file's vertex i. OBJ appends a copy of a vertex for every further normal
+///   that its faces give it. Texture coordinates, colours, materials and groups are not read.
+/// - STL: one mesh per solid, corners at bit-equal positions welded.
+/// - glTF: one mesh per primitive and node, placed by its scene_from_mesh (a negative scale stays there), in rest pose,
+///   with the default morph weights applied. External buffers are opened only inside the file's own folder; images
+///   never.
+/// - Normals come as the file has them, of any length; (0, 0, 0) where it has none for that vertex.
+///
+/// Errors, each one line "PATH: what, where, range": NOT_FOUND no such file; PERMISSION_DENIED it cannot be opened;
+/// INVALID_ARGUMENT malformed (non-finite positions, indices out of range, truncated, ...) or nothing to render;
+/// RESOURCE_EXHAUSTED past one of `limits`; UNIMPLEMENTED a feature that is named, such as Draco compression.
+/// Thread-safe.
 absl::StatusOr<LoadedFile> read_mesh_file(const std::filesystem::path& path, const ReadLimits& limits = {});
 
 }  // namespace diaphane

@@ -1,0 +1,229 @@
+#include "readers/gltf_accessor.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "fmt/format.h"
+
+namespace diaphane::readers {
+namespace {
+
+// glTF is little-endian, and so is every machine that this is built for.
+template <typename T>
+T load(const char* data) {
+  T value;
+  std::memcpy(&value, data, sizeof(value));
+  return value;
+}
+
+// One component as glTF 2.0 section 3.11 and KHR_mesh_quantization map it.
+float load_component(const char* data, int component, bool normalized) {
+  switch (component) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE: {
+      const float value = load<int8_t>(data);
+      return normalized ? std::max(value / 127.0f, -1.0f) : value;
+    }
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: {
+      const float value = load<uint8_t>(data);
+      return normalized ? value / 255.0f : value;
+    }
+    case TINYGLTF_COMPONENT_TYPE_SHORT: {
+      const float value = load<int16_t>(data);
+      return normalized ? std::max(value / 32767.0f, -1.0f) : value;
+    }
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: {
+      const float value = load<uint16_t>(data);
+      return normalized ? value / 65535.0f : value;
+    }
+    default:
+      return load<float>(data);
+  }
+}
+
+size_t component_bytes(int component) {
+  return static_cast<size_t>(tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(component)));
+}
+
+Vec3 load_vec3(const char* data, const tinygltf::Accessor& accessor) {
+  const size_t step = component_bytes(accessor.componentType);
+  return {load_component(data, accessor.componentType, accessor.normalized),
+          load_component(data + step, accessor.componentType, accessor.normalized),
+          load_component(data + 2 * step, accessor.componentType, accessor.normalized)};
+}
+
+uint32_t load_index(const char* data, int component) {
+  switch (component) {
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return load<uint8_t>(data);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return load<uint16_t>(data);
+    default:
+      return load<uint32_t>(data);
+  }
+}
+
+bool is_index_type(int component) {
+  return component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+         component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+}
+
+bool is_attribute_type(int component) {
+  return component == TINYGLTF_COMPONENT_TYPE_FLOAT ||
+         (component >= TINYGLTF_COMPONENT_TYPE_BYTE && component <= TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
+}
+
+bool uses_draco(const tinygltf::Model& model) {
+  return std::find(model.extensionsUsed.begin(), model.extensionsUsed.end(), "KHR_draco_mesh_compression") !=
+         model.extensionsUsed.end();
+}
+
+}  // namespace
+
+GltfAccessors::GltfAccessors(const tinygltf::Model& model, const GltfBuffers& buffers, const Source& source)
+    : model_(model),
+      buffers_(buffers),
+      source_(source),
+      most_elements_(4 * source.limits.max_vertices + 3 * source.limits.max_triangles) {}
+
+absl::StatusOr<const tinygltf::Accessor*> GltfAccessors::find(int accessor) const {
+  if (accessor < 0 || static_cast<size_t>(accessor) >= model_.accessors.size()) {
+    return source_.malformed(fmt::format("accessor {}", accessor), "",
+                             fmt::format("there are {}", model_.accessors.size()));
+  }
+  return &model_.accessors[static_cast<size_t>(accessor)];
+}
+
+absl::StatusOr<uint64_t> GltfAccessors::count(int accessor) const {
+  const absl::StatusOr<const tinygltf::Accessor*> found = find(accessor);
+  if (!found.ok()) return found.status();
+  return (*found)->count;
+}
+
+absl::Status GltfAccessors::spend(uint64_t elements, uint64_t expected, std::string_view where) {
+  if (elements != expected) {
+    return source_.malformed(fmt::format("{} elements", elements), where, fmt::format("must be {}", expected));
+  }
+  if (elements > most_elements_ - elements_) {
+    return source_.error(absl::StatusCode::kResourceExhausted, "too many accessor elements", where,
+                         fmt::format("must be at most {} in all", most_elements_));
+  }
+  elements_ += elements;
+  return absl::OkStatus();
+}
+
+absl::StatusOr<GltfAccessors::Elements> GltfAccessors::locate(int view, uint64_t offset, uint64_t element_bytes,
+                                                              uint64_t count, std::string_view where) const {
+  if (view < 0 || static_cast<size_t>(view) >= model_.bufferViews.size()) {
+    return source_.malformed(fmt::format("bufferView {}", view), where,
+                             fmt::format("there are {}", model_.bufferViews.size()));
+  }
+  const tinygltf::BufferView& v = model_.bufferViews[static_cast<size_t>(view)];
+  if (v.buffer < 0 || static_cast<size_t>(v.buffer) >= buffers_.size()) {
+    return source_.malformed(fmt::format("buffer {} of bufferView {}", v.buffer, view), where,
+                             fmt::format("there are {}", buffers_.size()));
+  }
+  const std::string_view bytes = buffers_[static_cast<size_t>(v.buffer)];
+  if (v.byteOffset > bytes.size() || v.byteLength > bytes.size() - v.byteOffset) {
+    return source_.malformed(fmt::format("bytes {} + {} of bufferView {}", v.byteOffset, v.byteLength, view), where,
+                             fmt::format("the buffer has {}", bytes.size()));
+  }
+  const uint64_t stride = v.byteStride == 0 ? element_bytes : v.byteStride;
+  if (stride < element_bytes) {
+    return source_.malformed(fmt::format("byteStride {} of bufferView {}", stride, view), where,
+                             fmt::format("must be at least {}", element_bytes));
+  }
+  // In this order nothing can overflow: what is multiplied later has been divided here.
+  const uint64_t room = offset > v.byteLength ? 0 : v.byteLength - offset;
+  if (count > 0 && (room < element_bytes || count - 1 > (room - element_bytes) / stride)) {
+    return source_.malformed(fmt::format("{} elements of {} bytes, {} apart", count, element_bytes, stride), where,
+                             fmt::format("bufferView {} has {} bytes for them", view, room));
+  }
+  return Elements{count > 0 ? bytes.data() + v.byteOffset + offset : nullptr, stride};
+}
+
+absl::StatusOr<std::vector<Vec3>> GltfAccessors::read_vec3(int index, uint64_t count, bool may_be_absent) {
+  const absl::StatusOr<const tinygltf::Accessor*> found = find(index);
+  if (!found.ok()) return found.status();
+  const tinygltf::Accessor& accessor = **found;
+  const std::string where = fmt::format("accessor {}", index);
+  if (accessor.type != TINYGLTF_TYPE_VEC3 || !is_attribute_type(accessor.componentType)) {
+    return source_.malformed(fmt::format("type {} of component type {}", accessor.type, accessor.componentType), where,
+                             "must be VEC3 of floats or of 8 or 16 bit integers");
+  }
+  const absl::Status status = spend(accessor.count, count, where);
+  if (!status.ok()) return status;
+  if (accessor.bufferView < 0 && !accessor.sparse.isSparse && !may_be_absent) {
+    if (uses_draco(model_)) return source_.unsupported("Draco compression (KHR_draco_mesh_compression)", where);
+    return source_.malformed("no data", where, "must have a bufferView or be sparse");
+  }
+
+  std::vector<Vec3> values;
+  if (accessor.bufferView >= 0) {
+    const absl::StatusOr<Elements> elements =
+        locate(accessor.bufferView, accessor.byteOffset, 3 * component_bytes(accessor.componentType), count, where);
+    if (!elements.ok()) return elements.status();
+    values.resize(count);
+    for (size_t i = 0; i < values.size(); ++i) values[i] = load_vec3((*elements)[i], accessor);
+  } else {
+    values.resize(count);
+  }
+  if (accessor.sparse.isSparse) {
+    const absl::Status applied = apply_sparse(accessor, where, values);
+    if (!applied.ok()) return applied;
+  }
+  return values;
+}
+
+absl::Status GltfAccessors::apply_sparse(const tinygltf::Accessor& accessor, std::string_view where,
+                                         std::vector<Vec3>& values) {
+  const auto& sparse = accessor.sparse;
+  if (sparse.count < 1 || static_cast<uint64_t>(sparse.count) > values.size()) {
+    return source_.malformed(fmt::format("sparse count {}", sparse.count), where,
+                             fmt::format("must be 1..{}", values.size()));
+  }
+  if (sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0 || !is_index_type(sparse.indices.componentType)) {
+    return source_.malformed("sparse offsets or index type", where, "must be 0 or more, and unsigned");
+  }
+  const auto count = static_cast<uint64_t>(sparse.count);
+  const absl::Status status = spend(count, count, where);
+  if (!status.ok()) return status;
+  const absl::StatusOr<Elements> indices =
+      locate(sparse.indices.bufferView, static_cast<uint64_t>(sparse.indices.byteOffset),
+             component_bytes(sparse.indices.componentType), count, where);
+  if (!indices.ok()) return indices.status();
+  const absl::StatusOr<Elements> replaced =
+      locate(sparse.values.bufferView, static_cast<uint64_t>(sparse.values.byteOffset),
+             3 * component_bytes(accessor.componentType), count, where);
+  if (!replaced.ok()) return replaced.status();
+  for (size_t i = 0; i < count; ++i) {
+    const uint32_t target = load_index((*indices)[i], sparse.indices.componentType);
+    if (target >= values.size()) {
+      return source_.malformed(fmt::format("sparse index {}", target), where,
+                               fmt::format("must be 0..{}", values.size() - 1));
+    }
+    values[target] = load_vec3((*replaced)[i], accessor);
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::vector<uint32_t>> GltfAccessors::read_indices(int index, uint64_t count) {
+  const absl::StatusOr<const tinygltf::Accessor*> found = find(index);
+  if (!found.ok()) return found.status();
+  const tinygltf::Accessor& accessor = **found;
+  const std::string where = fmt::format("accessor {}", index);
+  if (accessor.type != TINYGLTF_TYPE_SCALAR || !is_index_type(accessor.componentType) || accessor.normalized) {
+    return source_.malformed(fmt::format("type {} of component type {}", accessor.type, accessor.componentType), where,
+                             "indices must be SCALAR of unsigned integers");
+  }
+  if (accessor.sparse.isSparse) return source_.unsupported("a sparse accessor of indices", where);
+  const absl::Status status = spend(accessor.count, count, where);
+  if (!status.ok()) return status;
+  const absl::StatusOr<Elements> elements =
+      locate(accessor.bufferView, accessor.byteOffset, component_bytes(accessor.componentType), count, where);
+  if (!elements.ok()) return elements.status();
+  std::vector<uint32_t> indices(count);
+  for (size_t i = 0; i < indices.size(); ++i) indices[i] = load_index((*elements)[i], accessor.componentType);
+  return indices;
+}
+
+}  // namespace diaphane::readers

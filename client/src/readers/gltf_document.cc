@@ -1,0 +1,208 @@
+#include "readers/gltf_document.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <optional>
+
+#include "fmt/format.h"
+
+namespace diaphane::readers {
+namespace {
+
+using nlohmann::json;
+
+constexpr size_t kMostJsonBytes = size_t{256} << 20;
+constexpr int kDeepestJson = 64;
+constexpr uint64_t kMostJsonValues = 8'000'000;
+constexpr uint64_t kMostObjectsPerNode = 10;  // a node with its own mesh, primitive, accessors and views
+
+constexpr size_t kGlbHeaderBytes = 12;
+constexpr size_t kGlbChunkHeaderBytes = 8;
+constexpr uint32_t kGlbJson = 0x4e4f534a;
+constexpr uint32_t kGlbBinary = 0x004e4942;
+
+constexpr std::string_view kArrays[] = {"accessors", "buffers", "bufferViews",    "meshes",
+                                        "nodes",     "scenes",  "extensionsUsed", "extensionsRequired"};
+
+// Required extensions that change nothing of what is read here.
+constexpr std::string_view kHarmlessPrefixes[] = {"KHR_materials_", "KHR_texture_",  "KHR_lights_", "KHR_animation_",
+                                                  "EXT_texture_",   "MSFT_texture_", "KHR_xmp"};
+
+// Picks what is read out of the events of a JSON parse, and stops it when there is too much.
+class JsonFilter {
+ public:
+  struct Excess {
+    std::string_view what;
+    uint64_t limit;
+  };
+
+  explicit JsonFilter(uint64_t most_objects) : most_objects_(most_objects) {}
+
+  /// Whether the parser keeps what `event` is about. Throws Excess.
+  bool operator()(int depth, json::parse_event_t event, json& parsed) {
+    if (depth > kDeepestJson) throw Excess{"levels of JSON", kDeepestJson};
+    if (depth < skipped_depth_) skipped_depth_ = kNotSkipping;
+    if (event == json::parse_event_t::key) {
+      if (depth <= skipped_depth_)
+        skipped_depth_ = is_read(depth, parsed.get_ref<const std::string&>()) ? kNotSkipping : depth;
+      return skipped_depth_ == kNotSkipping;
+    }
+    if (skipped_depth_ != kNotSkipping) return false;
+    if (event == json::parse_event_t::object_start && ++objects_ > most_objects_) {
+      throw Excess{"JSON objects", most_objects_};
+    }
+    if (event == json::parse_event_t::value || event == json::parse_event_t::array_start) {
+      if (++values_ > kMostJsonValues) throw Excess{"JSON values", kMostJsonValues};
+      keep_whole(parsed);
+    }
+    return true;
+  }
+
+ private:
+  static constexpr int kNotSkipping = std::numeric_limits<int>::max();
+
+  static bool is_read(int depth, const std::string& key) {
+    if (depth > 1) return key != "extras" && key != "extensions" && key != "min" && key != "max";
+    return key == "asset" || key == "scene" ||
+           std::find(std::begin(kArrays), std::end(kArrays), key) != std::end(kArrays);
+  }
+
+  // tinygltf would cut an integer to 32 bits; as a floating-point number it is told that it is none.
+  static void keep_whole(json& value) {
+    const bool too_large = value.is_number_unsigned()  ? value.get<uint64_t>() > std::numeric_limits<int32_t>::max()
+                           : value.is_number_integer() ? value.get<int64_t>() < std::numeric_limits<int32_t>::min()
+                                                       : false;
+    if (too_large) value = value.get<double>();
+  }
+
+  const uint64_t most_objects_;
+  uint64_t objects_ = 0;
+  uint64_t values_ = 0;
+  int skipped_depth_ = kNotSkipping;  // of the key whose value is passed over
+};
+
+uint32_t read_u32(std::string_view bytes, size_t offset) {
+  std::array<unsigned char, 4> b;
+  std::memcpy(b.data(), bytes.data() + offset, b.size());
+  return uint32_t{b[0]} | uint32_t{b[1]} << 8 | uint32_t{b[2]} << 16 | uint32_t{b[3]} << 24;
+}
+
+// Finds the chunks of document.bytes; `text` becomes the JSON one.
+absl::Status split_glb(GltfDocument& document, std::string_view& text, const Source& source) {
+  const std::string_view bytes = document.bytes;
+  if (bytes.size() < kGlbHeaderBytes)
+    return source.malformed("ends within the GLB header", Place{"byte", bytes.size()});
+  const uint32_t version = read_u32(bytes, 4);
+  if (version == 1) return source.unsupported("glTF 1");
+  if (version != 2) return source.malformed(fmt::format("GLB version {}", version), Place{"byte", 4}, "must be 2");
+  const size_t length = read_u32(bytes, 8);
+  if (length > bytes.size() || length < kGlbHeaderBytes) {
+    return source.malformed(fmt::format("GLB length {}", length), Place{"byte", 8},
+                            fmt::format("must be {}..{}", kGlbHeaderBytes, bytes.size()));
+  }
+  size_t offset = kGlbHeaderBytes;
+  for (int chunk = 0; offset < length; ++chunk) {
+    if (length - offset < kGlbChunkHeaderBytes) {
+      return source.malformed("ends within a GLB chunk header", Place{"byte", offset});
+    }
+    const size_t size = read_u32(bytes, offset);
+    const uint32_t type = read_u32(bytes, offset + 4);
+    const size_t room = length - offset - kGlbChunkHeaderBytes;
+    if (size > room) {
+      return source.malformed(fmt::format("GLB chunk of {} bytes", size), Place{"byte", offset},
+                              fmt::format("there is room for {}", room));
+    }
+    if ((chunk == 0) != (type == kGlbJson)) {
+      return source.malformed("the first GLB chunk, and no other, must be JSON", Place{"byte", offset});
+    }
+    if (chunk == 0) {
+      text = bytes.substr(offset + kGlbChunkHeaderBytes, size);
+    } else if (type == kGlbBinary) {
+      if (document.has_chunk) return source.malformed("a second binary chunk", Place{"byte", offset});
+      document.has_chunk = true;
+      document.chunk_offset = offset + kGlbChunkHeaderBytes;
+      document.chunk_size = size;
+    }
+    offset += kGlbChunkHeaderBytes + size;
+  }
+  return text.empty() ? source.malformed("has no JSON chunk") : absl::OkStatus();
+}
+
+absl::Status check_version(const json& root, const Source& source) {
+  const auto asset = root.find("asset");
+  if (asset == root.end() || !asset->is_object() || !asset->contains("version") || !(*asset)["version"].is_string()) {
+    return source.malformed("asset.version is missing", "in the JSON", "must be \"2.0\"");
+  }
+  for (const char* name : {"version", "minVersion"}) {
+    const auto entry = asset->find(name);
+    if (entry == asset->end()) continue;
+    const std::string version = entry->is_string() ? entry->get<std::string>() : std::string();
+    if (version.rfind("1.", 0) == 0) return source.unsupported("glTF 1");
+    if (version.rfind("2.", 0) != 0 || (version != "2.0" && name == std::string_view("minVersion"))) {
+      return source.malformed(fmt::format("asset.{} {}", name, in_quotes(version)), "in the JSON", "must be \"2.0\"");
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_extensions(const json& root, const Source& source) {
+  const auto required = root.find("extensionsRequired");
+  if (required == root.end()) return absl::OkStatus();
+  for (const json& entry : *required) {
+    const std::string name = entry.is_string() ? entry.get<std::string>() : std::string();
+    const bool harmless = std::any_of(std::begin(kHarmlessPrefixes), std::end(kHarmlessPrefixes),
+                                      [&name](std::string_view prefix) { return name.rfind(prefix, 0) == 0; });
+    if (!harmless && name != "KHR_mesh_quantization") {
+      return source.unsupported(fmt::format("required extension {}", in_quotes(name)));
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status parse_json(std::string_view text, GltfDocument& document, const Source& source) {
+  if (text.size() > kMostJsonBytes) return source.over_limit("bytes of JSON", text.size(), kMostJsonBytes);
+  JsonFilter filter(kMostObjectsPerNode * uint64_t{source.limits.max_nodes} + 1000);
+  try {
+    document.json = json::parse(text.begin(), text.end(), std::ref(filter));
+  } catch (const JsonFilter::Excess& excess) {
+    return source.error(absl::StatusCode::kResourceExhausted, fmt::format("too many {}", excess.what), {},
+                        fmt::format("must be at most {}", excess.limit));
+  } catch (const json::parse_error& error) {
+    return source.malformed("is not well-formed JSON", Place{"byte", error.byte});
+  } catch (const json::exception&) {  // a number beyond the range of double
+    return source.malformed("holds a JSON number that is out of range");
+  }
+  if (!document.json.is_object()) return source.malformed("is not a JSON object");
+  for (std::string_view name : kArrays) {
+    const auto entry = document.json.find(std::string(name));
+    if (entry != document.json.end() && !entry->is_array()) {
+      return source.malformed(fmt::format("{} is not an array", name), "in the JSON");
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<GltfDocument> parse_gltf_document(std::string bytes, const Source& source) {
+  GltfDocument document;
+  document.bytes = std::move(bytes);
+  std::string_view text = document.bytes;
+  absl::Status status;
+  const bool glb = text.substr(0, 4) == "glTF";
+  if (glb) status = split_glb(document, text, source);
+  if (status.ok()) status = parse_json(text, document, source);
+  if (status.ok()) status = check_version(document.json, source);
+  if (status.ok()) status = check_extensions(document.json, source);
+  if (!status.ok()) return status;
+  if (!glb) document.bytes = {};
+  const auto nodes = document.json.find("nodes");
+  if (nodes != document.json.end() && nodes->size() > source.limits.max_nodes) {
+    return source.over_limit("nodes", nodes->size(), source.limits.max_nodes);
+  }
+  return document;
+}
+
+}  // namespace diaphane::readers

@@ -1,0 +1,73 @@
+// Vertices and polygons of a file, gathered into meshes under its limits.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "readers/polygon.h"
+#include "readers/source.h"
+
+namespace diaphane::readers {
+
+using Double3 = std::array<double, 3>;
+
+/// Builds a file's meshes one after the other. Checks what every format must: finite positions, indices in range, the
+/// limits of the source. Not thread-safe; `source` outlives it.
+class MeshBuilder {
+ public:
+  static constexpr uint64_t kMostCorners = 1'000'000;  ///< of one polygon
+
+  explicit MeshBuilder(const Source& source) : source_(source) {}
+
+  /// Makes room for counts that the file's size has been checked against. RESOURCE_EXHAUSTED past the limits.
+  absl::Status expect(uint64_t vertices, uint64_t triangles);
+
+  /// Positions beyond the range of float are refused as the infinite ones are.
+  absl::Status add_vertex(const Double3& position, Place place);
+
+  /// A copy of an earlier vertex.
+  absl::Status repeat_vertex(uint32_t vertex);
+
+  /// The normal of a vertex, (0, 0, 0) for those without; one that is not finite counts as none.
+  void set_normal(uint32_t vertex, const Double3& normal);
+
+  /// A polygon of any number of corners; fewer than three different ones in a row and it is dropped.
+  absl::Status add_polygon(std::span<const int64_t> corners, Place place);
+
+  uint64_t vertex_count() const { return mesh_.positions.size(); }
+
+  /// Ends the mesh so far under `name`, unless it has no triangle. RESOURCE_EXHAUSTED past limits.max_nodes meshes.
+  absl::Status end_mesh(std::string_view name);
+
+  /// A line for whoever asked for the file.
+  void warn(std::string line) { file_.warnings.push_back(std::move(line)); }
+
+  /// The meshes that were ended. INVALID_ARGUMENT when there is none: nothing to render.
+  absl::StatusOr<LoadedFile> finish();
+
+ private:
+  absl::Status add_triangle(uint32_t a, uint32_t b, uint32_t c);
+
+  const Source& source_;
+  LoadedFile file_;
+  MeshData mesh_;
+  PolygonSplitter splitter_;
+  std::vector<uint32_t> corners_;
+  std::vector<Vec3> corner_positions_;
+  uint64_t vertices_ = 0;
+  uint64_t triangles_ = 0;
+  uint64_t degenerate_ = 0;
+  uint64_t bad_normals_ = 0;
+};
+
+/// "nothing to render", in the name of `source`: what a file without a triangle is refused with.
+absl::Status nothing_to_render(const Source& source, uint64_t vertices);
+
+/// A name from a file, as far as it is fit for a message: at most 120 bytes, without control characters.
+std::string tidy_name(std::string_view name);
+
+}  // namespace diaphane::readers

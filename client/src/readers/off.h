@@ -1,0 +1,18 @@
+// Geomview's Object File Format, as text.
+#pragma once
+
+#include <string_view>
+
+#include "absl/status/statusor.h"
+#include "readers/source.h"
+
+namespace diaphane::readers {
+
+/// Whether `text` begins with an OFF keyword (OFF, COFF, NOFF, CNOFF, STOFF, ...).
+bool looks_like_off(std::string_view text);
+
+/// Reads positions, normals (NOFF) and faces; one mesh. One vertex or face per line. Colours and texture coordinates
+/// are passed over. UNIMPLEMENTED: 4OFF and nOFF (points of other dimensions) and binary OFF. Errors: read_mesh_file().
+absl::StatusOr<LoadedFile> read_off(std::string_view text, const Source& source);
+
+}  // namespace diaphane::readers

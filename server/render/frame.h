@@ -10,12 +10,18 @@
 
 #include "absl/status/statusor.h"
 #include "base/image.h"
+#include "diffusion/quality.h"
 #include "scene/camera.h"
 #include "scene/snapshot.h"
 
 namespace diaphane::render {
 
-enum class Technique { kPaper, kLambert };
+enum class Technique {
+  kIntegral,   ///< the dipole over the whole surface
+  kPaper,      ///< the two-pass cube map, as published
+  kReference,  ///< the dipole by brute force, a pixel at a time: slow
+  kLambert     ///< opaque and matt, for comparison
+};
 enum class Terms { kBoth, kLocal, kGlobal };
 
 struct PaperSettings {
@@ -26,7 +32,9 @@ struct PaperSettings {
 };
 
 struct RenderSettings {
-  Technique technique = Technique::kPaper;
+  Technique technique = Technique::kIntegral;
+  diffusion::Quality quality = diffusion::Quality::kNormal;  ///< of the integral
+  bool shadows = true;                                       ///< of the integral and the reference
   PaperSettings paper;
   float exposure_ev = 0;  ///< stops; not applied to linear pixels
 };

@@ -1,49 +1,44 @@
-// One mesh of a scene as the GPU holds it.
+// A placed mesh as the GPU holds it.
 #pragma once
 
 #include <memory>
-#include <optional>
+#include <span>
 
+#include "geometry/shape.h"
+#include "geometry/topology.h"
 #include "gl/objects.h"
-#include "glm/mat4x4.hpp"
-#include "render/cube_atlas.h"
+#include "render/memo.h"
 #include "render/stage_clock.h"
-#include "scene/snapshot.h"
 
 namespace diaphane::render {
 
-/// Follows a scene mesh from revision to revision and does again only what its changes call for. Render thread only.
+/// Vertex buffers that are filled again only when what they hold changed. Render thread only.
 class GpuMesh {
  public:
-  /// Brings vertex buffers up to `mesh`. Stages: place, upload.
-  void update(const scene::Mesh& mesh, double millimetres_per_unit, StageClock& clock);
+  /// Positions at ATTRIBUTE_POSITION and normals at ATTRIBUTE_NORMAL, mm and world axes. `generation` names `shape`'s
+  /// state within `topology`. Stage: upload.
+  void update(const std::shared_ptr<const geometry::MeshTopology>& topology, const geometry::PlacedShape& shape,
+              uint64_t generation, StageClock& clock);
 
-  /// Draws all triangles with positions at ATTRIBUTE_POSITION and normals at ATTRIBUTE_NORMAL, in mm and world axes.
+  /// Radiosity at ATTRIBUTE_RADIOSITY, one value a vertex of the last update(). Stage: upload.
+  void update_radiosity(std::span<const glm::vec3> radiosity, uint64_t generation, StageClock& clock);
+
+  /// Draws all triangles.
   void draw() const;
 
-  const geometry::Bounds& bounds_mm() const { return bounds_mm_; }
   bool flipped() const { return flipped_; }
-  /// Grows whenever positions or normals in millimetres change.
-  uint64_t generation() const { return generation_; }
-  /// The scene let go of the mesh that this one follows.
-  bool orphaned() const { return topology_.expired(); }
-
-  std::optional<CubeAtlas> atlas;
 
  private:
   std::weak_ptr<const geometry::MeshTopology> topology_;
-  std::weak_ptr<const geometry::MeshShape> shape_;
-  glm::mat4 scene_from_mesh_{0};
-  double millimetres_per_unit_ = 0;
-
+  Memo<uint64_t> shape_memo_;
+  Memo<uint64_t> radiosity_memo_;
   gl::VertexArray vertex_array_;
   gl::Buffer positions_;
   gl::Buffer normals_;
+  gl::Buffer radiosity_;
   gl::Buffer indices_;
   GLsizei index_count_ = 0;
-  geometry::Bounds bounds_mm_;
   bool flipped_ = false;
-  uint64_t generation_ = 0;
 };
 
 }  // namespace diaphane::render

@@ -18,14 +18,14 @@ void for_each(size_t count, Work&& work) {
 
 }  // namespace
 
-void IrradianceStage::cast_shadows(const geometry::MeshTopology& topology, const geometry::PlacedShape& shape,
+void IrradianceStage::cast_shadows(const diffusion::SurfaceTopology& topology, const geometry::PlacedShape& shape,
                                    std::span<const LightStorage> lights, const ShadowScene& shadows) {
   const size_t triangles = topology.triangles.size();
   centroids_mm_.resize(triangles);
   facet_normals_.resize(triangles);
   areas_.resize(triangles);
   of_triangle_.resize(lights.size() * triangles);
-  of_weld_.resize(lights.size() * topology.weld_count);
+  of_slot_.resize(lights.size() * topology.slot_count);
   for_each(triangles, [&](size_t t) {
     const glm::uvec3& i = topology.triangles[t];
     const glm::vec3& a = shape.positions_mm[i.x];
@@ -39,21 +39,21 @@ void IrradianceStage::cast_shadows(const geometry::MeshTopology& topology, const
   for (size_t light = 0; light < lights.size(); ++light) {
     const std::span<float> seen(of_triangle_.data() + light * triangles, triangles);
     shadows.visibility(lights[light], centroids_mm_, facet_normals_, seen);
-    float* of_weld = of_weld_.data() + light * topology.weld_count;
-    for_each(topology.weld_count, [&](size_t w) {
+    float* of_slot = of_slot_.data() + light * topology.slot_count;
+    for_each(topology.slot_count, [&](size_t w) {
       float sum = 0;
       float area = 0;
-      for (uint32_t k = topology.first_triangle[w]; k < topology.first_triangle[w + 1]; ++k) {
-        const uint32_t t = topology.triangle_of_weld[k];
+      for (uint32_t k = topology.first_corner[w]; k < topology.first_corner[w + 1]; ++k) {
+        const uint32_t t = topology.triangle_of_corner[k];
         sum += areas_[t] * seen[t];
         area += areas_[t];
       }
-      of_weld[w] = area > 0 ? sum / area : 1.0f;
+      of_slot[w] = area > 0 ? sum / area : 1.0f;
     });
   }
 }
 
-const SurfaceIrradiance& IrradianceStage::run(const geometry::MeshTopology& topology,
+void IrradianceStage::run(const diffusion::SurfaceTopology& topology,
                                               const geometry::PlacedShape& shape, std::span<const LightStorage> lights,
                                               float refractive_index, const ShadowScene* shadows) {
   const size_t triangles = topology.triangles.size();
@@ -76,14 +76,13 @@ const SurfaceIrradiance& IrradianceStage::run(const geometry::MeshTopology& topo
   for_each(shape.positions_mm.size(), [&](size_t v) {
     glm::vec3 e(0);
     for (size_t light = 0; light < lights.size(); ++light) {
-      const float seen = shadows == nullptr ? 1.0f : of_weld_[light * topology.weld_count + topology.weld_of_vertex[v]];
+      const float seen = shadows == nullptr ? 1.0f : of_slot_[light * topology.slot_count + topology.slot_of_vertex[v]];
       if (seen > 0) {
         e += seen * entering_irradiance(lights[light], shape.positions_mm[v], shape.normals[v], refractive_index);
       }
     }
     irradiance_.of_vertex[v] = e;
   });
-  return irradiance_;
 }
 
 }  // namespace diaphane::render

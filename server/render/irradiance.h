@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "diffusion/surface_topology.h"
 #include "geometry/shape.h"
-#include "geometry/topology.h"
 #include "render/shadow.h"
 #include "render/uniforms.h"
 
@@ -13,7 +13,7 @@ namespace diaphane::render {
 
 /// E (RGB, W·mm⁻²) of all lights, Fresnel and clamped cosine included (paper Eq. 4).
 struct SurfaceIrradiance {
-  std::vector<glm::vec3> of_triangle;  ///< at centroids, with the renormalised mean of the vertex normals
+  std::vector<glm::vec3> of_triangle;  ///< at centroids, with the renormalised mean of the vertex normals; the topology's order
   std::vector<glm::vec3> of_vertex;
 };
 
@@ -21,12 +21,13 @@ struct SurfaceIrradiance {
 class IrradianceStage {
  public:
   /// `shadows` null: every light is seen everywhere. A vertex sees of a light what its triangles see, by area.
-  const SurfaceIrradiance& run(const geometry::MeshTopology& topology, const geometry::PlacedShape& shape,
-                               std::span<const LightStorage> lights, float refractive_index,
-                               const ShadowScene* shadows);
+  void run(const diffusion::SurfaceTopology& topology, const geometry::PlacedShape& shape,
+           std::span<const LightStorage> lights, float refractive_index, const ShadowScene* shadows);
+
+  const SurfaceIrradiance& result() const { return irradiance_; }
 
  private:
-  void cast_shadows(const geometry::MeshTopology& topology, const geometry::PlacedShape& shape,
+  void cast_shadows(const diffusion::SurfaceTopology& topology, const geometry::PlacedShape& shape,
                     std::span<const LightStorage> lights, const ShadowScene& shadows);
 
   SurfaceIrradiance irradiance_;
@@ -34,7 +35,7 @@ class IrradianceStage {
   std::vector<glm::vec3> facet_normals_;
   std::vector<float> areas_;
   std::vector<float> of_triangle_;  ///< visibility, [light][triangle]
-  std::vector<float> of_weld_;      ///< visibility, [light][weld]
+  std::vector<float> of_slot_;      ///< visibility, [light][slot]
 };
 
 }  // namespace diaphane::render

@@ -22,11 +22,13 @@ absl::StatusOr<Shading> Shading::load(const gl::ShaderLibrary& library) {
   if (!atlas.ok()) return atlas.status();
   auto gbuffer = gl::load_program(library, "gbuffer.vert", "gbuffer.frag");
   if (!gbuffer.ok()) return gbuffer.status();
+  auto integral = gl::load_program(library, "integral.vert", "integral.frag");
+  if (!integral.ok()) return integral.status();
   auto paper = gl::load_program(library, "fullscreen.vert", "paper_shade.frag");
   if (!paper.ok()) return paper.status();
   auto lambert = gl::load_program(library, "fullscreen.vert", "lambert_shade.frag");
   if (!lambert.ok()) return lambert.status();
-  return Shading(*std::move(atlas), *std::move(gbuffer), *std::move(paper), *std::move(lambert));
+  return Shading(*std::move(atlas), *std::move(gbuffer), *std::move(integral), *std::move(paper), *std::move(lambert));
 }
 
 void Shading::bind_uniforms(GLuint binding, const gl::Buffer& buffer, const void* data, size_t bytes) const {

@@ -24,15 +24,17 @@ class Shading {
 
   const gl::Program& atlas() const { return atlas_program_; }
   const gl::Program& gbuffer() const { return gbuffer_program_; }
+  const gl::Program& integral() const { return integral_program_; }
 
   /// Full screen, over a bound G-buffer; what is bound must be the mesh's.
   void shade_paper(const CubeAtlas& atlas, const PaperSettings& settings) const;
   void shade_lambert() const;
 
  private:
-  Shading(gl::Program atlas, gl::Program gbuffer, gl::Program paper, gl::Program lambert)
+  Shading(gl::Program atlas, gl::Program gbuffer, gl::Program integral, gl::Program paper, gl::Program lambert)
       : atlas_program_(std::move(atlas)),
         gbuffer_program_(std::move(gbuffer)),
+        integral_program_(std::move(integral)),
         paper_program_(std::move(paper)),
         lambert_program_(std::move(lambert)) {}
   void bind_uniforms(GLuint binding, const gl::Buffer& buffer, const void* data, size_t bytes) const;
@@ -40,6 +42,7 @@ class Shading {
 
   gl::Program atlas_program_;
   gl::Program gbuffer_program_;
+  gl::Program integral_program_;
   gl::Program paper_program_;
   gl::Program lambert_program_;
   gl::VertexArray no_attributes_;

@@ -29,6 +29,10 @@ ViewTargets::ViewTargets(uint32_t width_px, uint32_t height_px, PixelFormat form
 
   glBindFramebuffer(GL_FRAMEBUFFER, shading_.id());
   attach(GL_COLOR_ATTACHMENT0, picture_);
+
+  glBindFramebuffer(GL_FRAMEBUFFER, forward_.id());
+  attach(GL_COLOR_ATTACHMENT0, picture_);
+  attach(GL_DEPTH_ATTACHMENT, depth_);
 }
 
 void ViewTargets::begin_gbuffer() const {
@@ -38,6 +42,15 @@ void ViewTargets::begin_gbuffer() const {
   glClearBufferfv(GL_COLOR, 1, kNothing);
   glClearBufferfv(GL_DEPTH, 0, &far);
   glEnable(GL_DEPTH_TEST);
+}
+
+void ViewTargets::begin_forward() const {
+  const float far = 1;
+  glBindFramebuffer(GL_FRAMEBUFFER, forward_.id());
+  glClearBufferfv(GL_COLOR, 0, kNothing);
+  glClearBufferfv(GL_DEPTH, 0, &far);
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_FRAMEBUFFER_SRGB);
 }
 
 void ViewTargets::begin_shading() const {
@@ -55,6 +68,17 @@ void ViewTargets::read_back(uint32_t width_px, uint32_t height_px, void* pixels)
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, static_cast<GLsizei>(width_px), static_cast<GLsizei>(height_px), GL_RGBA,
                format_ == PixelFormat::kSrgb8 ? GL_UNSIGNED_BYTE : GL_FLOAT, pixels);
+}
+
+void ViewTargets::read_gbuffer(uint32_t width_px, uint32_t height_px, glm::vec4* positions, glm::vec4* normals) const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, gbuffer_.id());
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  const auto width = static_cast<GLsizei>(width_px);
+  const auto height = static_cast<GLsizei>(height_px);
+  glReadBuffer(GL_COLOR_ATTACHMENT0);
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, positions);
+  glReadBuffer(GL_COLOR_ATTACHMENT1);
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, normals);
 }
 
 }  // namespace diaphane::render

@@ -1,6 +1,7 @@
 // Binding points and attribute locations; C++ reads this file too.
 #define ATTRIBUTE_POSITION 0
 #define ATTRIBUTE_NORMAL 1
+#define ATTRIBUTE_RADIOSITY 2
 
 #define UNIT_GBUFFER_POSITION 0
 #define UNIT_GBUFFER_NORMAL 1

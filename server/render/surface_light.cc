@@ -1,0 +1,54 @@
+#include "render/surface_light.h"
+
+namespace diaphane::render {
+
+void SurfaceLight::update(const std::shared_ptr<const geometry::MeshTopology>& topology, const Inputs& inputs,
+                          StageClock& clock) {
+  if (integral_ == nullptr || topology_.lock() != topology) {
+    clock.run("order", [&] {
+      integral_ = std::make_unique<diffusion::DipoleIntegral>(diffusion::build_surface_topology(topology));
+    });
+    topology_ = topology;
+    radiosity_.assign(topology->vertex_count, glm::vec3(0));
+    refit_reads_.forget();
+    light_reads_.forget();
+    flux_reads_.forget();
+    material_reads_.forget();
+    gather_reads_.forget();
+  } else {
+    clock.sleep("order");
+  }
+  const uint64_t placed = inputs.placed.generation();
+  const geometry::PlacedShape& shape = inputs.placed.shape();
+  const float refractive_index = inputs.material.refractive_index;
+  const Materials material{inputs.material.absorption_mm, inputs.material.reduced_scattering_mm, refractive_index};
+  const auto stage = [&](std::string_view name, bool stale, auto&& work) {
+    if (stale) {
+      clock.run(name, work);
+    } else {
+      clock.sleep(name);
+    }
+  };
+
+  stage("refit", refit_reads_.renew(placed), [&] {
+    integral_->update_positions(shape.positions_mm);
+    integral_->refit_geometry();
+  });
+  std::vector<LightStorage> lights(inputs.lights.begin(), inputs.lights.end());
+  const bool relit = light_reads_.renew({placed, std::move(lights), refractive_index, inputs.shadows_generation});
+  stage("irradiance", relit, [&] {
+    irradiance_.run(integral_->topology(), shape, inputs.lights, refractive_index, inputs.shadows);
+    ++irradiance_generation_;
+  });
+  stage("flux", flux_reads_.renew({placed, irradiance_generation_}), [&] {
+    integral_->set_irradiance(irradiance_.result().of_triangle, irradiance_.result().of_vertex);
+    integral_->refit_flux();
+  });
+  if (material_reads_.renew(material)) integral_->set_material(inputs.material);
+  stage("gather", gather_reads_.renew({placed, irradiance_generation_, material, inputs.quality}), [&] {
+    integral_->gather(inputs.quality, radiosity_);
+    ++generation_;
+  });
+}
+
+}  // namespace diaphane::render

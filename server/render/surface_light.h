@@ -1,0 +1,56 @@
+// Technique `integral`, the half that needs no GL: from a placed mesh and lights to the radiosity of every vertex.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "diffusion/dipole_integral.h"
+#include "render/irradiance.h"
+#include "render/memo.h"
+#include "render/placed_mesh.h"
+
+namespace diaphane::render {
+
+/// Light on one mesh. Stages: refit, irradiance, flux, gather; each sleeps while what it reads is the same. One thread
+/// calls; work is spread over all cores. The same bytes on any number of threads.
+class SurfaceLight {
+ public:
+  struct Inputs {
+    const PlacedMesh& placed;
+    std::span<const LightStorage> lights;
+    const optics::Coefficients& material;
+    diffusion::Quality quality;
+    const ShadowScene* shadows;   ///< null: unshadowed
+    uint64_t shadows_generation;  ///< of what casts them; 0 without
+  };
+
+  void update(const std::shared_ptr<const geometry::MeshTopology>& topology, const Inputs& inputs, StageClock& clock);
+
+  /// B, RGB, W·mm⁻², a value a vertex. Valid until the next update.
+  std::span<const glm::vec3> radiosity() const { return radiosity_; }
+  /// E of the last update, at triangles and vertices.
+  const SurfaceIrradiance& irradiance() const { return irradiance_.result(); }
+  /// Grows whenever radiosity changes.
+  uint64_t generation() const { return generation_; }
+
+ private:
+  using Materials = std::tuple<glm::vec3, glm::vec3, float>;
+
+  std::weak_ptr<const geometry::MeshTopology> topology_;
+  std::unique_ptr<diffusion::DipoleIntegral> integral_;
+  IrradianceStage irradiance_;
+  std::vector<glm::vec3> radiosity_;
+  uint64_t irradiance_generation_ = 0;
+  uint64_t generation_ = 0;
+
+  // What each stage reads, in the order in which they run.
+  Memo<uint64_t> refit_reads_;                                                          // place
+  Memo<std::tuple<uint64_t, std::vector<LightStorage>, float, uint64_t>> light_reads_;  // place, lights, η, shadows
+  Memo<std::tuple<uint64_t, uint64_t>> flux_reads_;                                     // place, irradiance
+  Memo<Materials> material_reads_;
+  Memo<std::tuple<uint64_t, uint64_t, Materials, diffusion::Quality>> gather_reads_;  // place, irradiance, material, quality
+};
+
+}  // namespace diaphane::render

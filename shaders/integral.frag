@@ -1,0 +1,17 @@
+#version 430 core
+#include "shared/fresnel.glsl"
+#include "shared/material.glsl"
+#include "shared/view.glsl"
+
+// The integral is in the vertices' radiosity already: L = Ft(eta, cos)·B/π (paper Eq. 2).
+in vec3 to_eye;
+in vec3 world_normal;
+in vec3 leaving;
+
+layout(location = 0) out vec4 radiance;
+
+void main() {
+  float cosine = abs(dot(world_normal, to_eye)) * inversesqrt(dot(world_normal, world_normal) * dot(to_eye, to_eye));
+  float transmittance = fresnel_transmittance(mean_free_path_mm.a, cosine);
+  radiance = vec4(radiance_scale * transmittance / PI * leaving, 1.0);
+}

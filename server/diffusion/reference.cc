@@ -10,9 +10,11 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "diffusion/reference.cc"
-#include "hwy/contrib/math/math-inl.h"
+// clang-format off: foreach_target comes first
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
+#include "hwy/contrib/math/math-inl.h"
+// clang-format on
 
 #ifndef DIAPHANE_DIFFUSION_REFERENCE_ONCE
 #define DIAPHANE_DIFFUSION_REFERENCE_ONCE

@@ -10,7 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "base/image.h"
-#include "diffusion/quality.h"
+#include "diffusion/dipole_integral.h"
 #include "scene/camera.h"
 #include "scene/snapshot.h"
 

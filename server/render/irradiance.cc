@@ -53,9 +53,8 @@ void IrradianceStage::cast_shadows(const diffusion::SurfaceTopology& topology, c
   }
 }
 
-void IrradianceStage::run(const diffusion::SurfaceTopology& topology,
-                                              const geometry::PlacedShape& shape, std::span<const LightStorage> lights,
-                                              float refractive_index, const ShadowScene* shadows) {
+void IrradianceStage::run(const diffusion::SurfaceTopology& topology, const geometry::PlacedShape& shape,
+                          std::span<const LightStorage> lights, float refractive_index, const ShadowScene* shadows) {
   const size_t triangles = topology.triangles.size();
   irradiance_.of_triangle.resize(triangles);
   irradiance_.of_vertex.resize(shape.positions_mm.size());

@@ -13,7 +13,8 @@ namespace diaphane::render {
 
 /// E (RGB, W·mm⁻²) of all lights, Fresnel and clamped cosine included (paper Eq. 4).
 struct SurfaceIrradiance {
-  std::vector<glm::vec3> of_triangle;  ///< at centroids, with the renormalised mean of the vertex normals; the topology's order
+  std::vector<glm::vec3>
+      of_triangle;  ///< at centroids, with the renormalised mean of the vertex normals; the topology's order
   std::vector<glm::vec3> of_vertex;
 };
 

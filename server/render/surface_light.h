@@ -50,7 +50,8 @@ class SurfaceLight {
   Memo<std::tuple<uint64_t, std::vector<LightStorage>, float, uint64_t>> light_reads_;  // place, lights, η, shadows
   Memo<std::tuple<uint64_t, uint64_t>> flux_reads_;                                     // place, irradiance
   Memo<Materials> material_reads_;
-  Memo<std::tuple<uint64_t, uint64_t, Materials, diffusion::Quality>> gather_reads_;  // place, irradiance, material, quality
+  Memo<std::tuple<uint64_t, uint64_t, Materials, diffusion::Quality>>
+      gather_reads_;  // place, irradiance, material, quality
 };
 
 }  // namespace diaphane::render

@@ -20,7 +20,8 @@ class ViewTargets {
 
   /// Clears the G-buffer and makes it the target.
   void begin_gbuffer() const;
-  /// Clears the picture to transparent black and the depth, and makes both the target: for meshes drawn straight into it.
+  /// Clears the picture to transparent black and the depth, and makes both the target: for meshes drawn straight into
+  /// it.
   void begin_forward() const;
   /// Clears the picture to transparent black, makes it the target, and binds the G-buffer for sampling.
   void begin_shading() const;

@@ -64,6 +64,7 @@ struct PlaneScene {
     request.camera.eye = 60.0f * normal;
     request.camera.fov_y_deg = 10;
     request.width_px = request.height_px = kSize_px;
+    request.settings.technique = Technique::kPaper;
     request.settings.paper = {.terms = Terms::kLocal, .kernel_taps = taps, .face_size_px = face_size_px};
     return request;
   }

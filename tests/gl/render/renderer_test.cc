@@ -39,6 +39,7 @@ class Renderer : public ::testing::Test {
   static FrameRequest request_of(std::shared_ptr<const scene::SceneSnapshot> scene) {
     FrameRequest request;
     request.scene = std::move(scene);
+    request.settings.technique = Technique::kPaper;
     request.camera.eye = {0, 0, 60};
     request.width_px = 96;
     request.height_px = 64;

@@ -8,6 +8,7 @@
 #include "glm/geometric.hpp"
 #include "render/cube_atlas.h"
 #include "render/gpu_mesh.h"
+#include "render/placed_mesh.h"
 #include "render/shading.h"
 #include "tests/gl/render/scenes.h"
 #include "tests/support/meshes.h"
@@ -91,29 +92,29 @@ TEST(SelfOcclusion, AgreesWithDepthOnTheBunny) {
   const auto scene = make_scene({bunny->positions_mm, bunny->triangles}, "marble");
   add_point_light(*scene, {10, 30, 40}, 1000);
   StageClock clock;
+  PlacedMesh placed;
+  placed.update(*scene->meshes[0], 1, clock);
   GpuMesh mesh;
-  mesh.update(*scene->meshes[0], 1, clock);
+  mesh.update(scene->meshes[0]->topology, placed.shape(), placed.generation(), clock);
   shading->bind(material_uniforms(scene->materials[0].coefficients));
   const LightStorage light{.position_mm = {10, 30, 40, 0}, .power = {1000, 1000, 1000, 0}};
   shading->bind(std::span(&light, 1));
 
   constexpr uint32_t kFine_px = 2048;
-  const BoxUniforms fine_box = fit_box(mesh.bounds_mm(), kFine_px);
+  const BoxUniforms fine_box = fit_box(placed.bounds_mm(), kFine_px);
   CubeAtlas fine({0, {}, 1.5f, kFine_px}, fine_box);
   shading->bind(fine_box);
   fine.render(shading->atlas(), [&] { mesh.draw(); });
   const std::vector<float> fine_surface = read_layers(fine.surface(), kFine_px);
 
-  const BoxUniforms box = fit_box(mesh.bounds_mm(), 256);
+  const BoxUniforms box = fit_box(placed.bounds_mm(), 256);
   CubeAtlas atlas({0, {}, 1.5f, 256}, box);
   shading->bind(box);
   atlas.render(shading->atlas(), [&] { mesh.draw(); });
 
   constexpr uint32_t kSide = 256;
-  const geometry::PlacedShape placed =
-      geometry::place(*scene->meshes[0]->topology, *scene->meshes[0]->shape, glm::mat4(1), 1);
   const auto points =
-      area_uniform_points(*scene->meshes[0]->topology, placed, glm::vec3(box.centre_mm), size_t{kSide} * kSide);
+      area_uniform_points(*scene->meshes[0]->topology, placed.shape(), glm::vec3(box.centre_mm), size_t{kSide} * kSide);
   gl::Buffer points_buffer;
   gl::upload(points_buffer, GL_SHADER_STORAGE_BUFFER, points.data(), points.size() * sizeof(SurfacePoint),
              GL_STATIC_DRAW);

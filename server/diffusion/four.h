@@ -1,0 +1,33 @@
+// Four floats at once with the compiler's own vectors: the same bytes on every machine that rounds the same.
+#pragma once
+
+#include <cmath>
+#include <cstring>
+
+namespace diaphane::diffusion {
+
+typedef float Four __attribute__((vector_size(16)));
+
+inline Four load4(const float* from) {
+  Four v;
+  std::memcpy(&v, from, sizeof(v));
+  return v;
+}
+
+inline void store4(float* to, Four v) { std::memcpy(to, &v, sizeof(v)); }
+
+inline Four max4(Four a, Four b) { return a > b ? a : b; }
+
+inline Four sqrt4(Four v) { return Four{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])}; }
+
+/// Rows become columns.
+inline void transpose4(Four& a, Four& b, Four& c, Four& d) {
+  const Four ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5), ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const Four cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5), cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  a = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
+  c = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
+  d = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+}
+
+}  // namespace diaphane::diffusion

@@ -1,0 +1,206 @@
+#include "diffusion/kernel_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace diaphane::diffusion {
+namespace {
+
+using std::numbers::pi;
+
+/// Beyond the last r with r²·Rd above this share of its peak, the kernel is left to decay as it will.
+constexpr double kNegligible = 1e-4;
+constexpr double kTableSpan = 65536;
+
+/// h(d) = (1 + σd) e^(−σd)/d³ with d² = r² + height², and its derivatives in r².
+KernelValue source_kernel(double height, double transport, double distance2) {
+  const double d = std::sqrt(std::max(distance2 + height * height, 1e-3 * height * height));
+  const double s = transport * d, e = std::exp(-s), d2 = d * d;
+  return {e * (1 + s) / (d * d2), -0.5 * e * (3 + s * (3 + s)) / (d * d2 * d2),
+          0.25 * e * (15 + s * (15 + s * (6 + s))) / (d * d2 * d2 * d2)};
+}
+
+/// The cubic through four Chebyshev nodes of [1, 4], as coefficients of powers of t.
+std::array<double, 4> interpolate_cubic(const std::array<double, 4>& t, const std::array<double, 4>& values) {
+  std::array<double, 4> divided = values;
+  for (size_t order = 1; order < 4; ++order) {
+    for (size_t i = 3; i >= order; --i) divided[i] = (divided[i] - divided[i - 1]) / (t[i] - t[i - order]);
+  }
+  std::array<double, 4> coefficients{divided[3], 0, 0, 0};
+  for (int i = 2; i >= 0; --i) {
+    for (size_t power = 3; power > 0; --power) coefficients[power] = coefficients[power - 1] - t[static_cast<size_t>(i)] * coefficients[power];
+    coefficients[0] = divided[static_cast<size_t>(i)] - t[static_cast<size_t>(i)] * coefficients[0];
+  }
+  return coefficients;
+}
+
+/// Fills one channel of `table` with kernel(r²).
+template <class Kernel>
+void tabulate(const KernelDomain& domain, int channel, const Kernel& kernel, KernelTable& table) {
+  std::array<double, 4> nodes;
+  for (size_t i = 0; i < 4; ++i) nodes[i] = 2.5 - 1.5 * std::cos(pi * (static_cast<double>(i) + 0.5) / 4);
+  double start = KernelDomain::kSmallest;
+  for (int segment = 0; segment < KernelTable::kSegments; ++segment, start *= 4) {
+    std::array<double, 4> values[3];
+    for (size_t i = 0; i < 4; ++i) {
+      const double u = start * nodes[i];
+      const KernelValue k = kernel((u - KernelDomain::kSmallest) / domain.scale);
+      values[0][i] = k.value * u * u;
+      values[1][i] = k.first * u * u * u;
+      values[2][i] = k.second * u * u * u * u;
+    }
+    for (int derivative = 0; derivative < 3; ++derivative) {
+      const std::array<double, 4> cubic = interpolate_cubic(nodes, values[derivative]);
+      double unit = 1;
+      for (size_t power = 0; power < 4; ++power, unit /= start) {
+        table.coefficient[derivative][channel][power][segment] = static_cast<float>(cubic[power] * unit);
+      }
+    }
+  }
+}
+
+/// The last of log-spaced r with r²·Rd above a share of its peak, over all channels, mm.
+double effective_range(const optics::Dipole& dipole, double diameter) {
+  double range = 0;
+  for (int c = 0; c < 3; ++c) {
+    double peak = 0;
+    const double first = 0.1 * dipole.mean_free_path_mm[c];
+    for (double r = first; r < diameter; r *= 1.1) peak = std::max(peak, r * r * dipole_kernel(dipole, c, r * r).value);
+    double last = first;
+    for (double r = first; r < diameter; r *= 1.1) {
+      if (r * r * dipole_kernel(dipole, c, r * r).value > kNegligible * peak) last = r;
+    }
+    range = std::max(range, 1.1 * last);
+  }
+  return std::min(range, diameter);
+}
+
+/// How much of a Gaussian of deviation σ the vertices at this spacing can carry.
+double carried_share(double deviation, double spacing) {
+  const double t = std::clamp((deviation / spacing - 0.48) / 0.24, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+}  // namespace
+
+KernelValue dipole_kernel(const optics::Dipole& dipole, int channel, double distance2_mm2) {
+  const double scale = dipole.reduced_albedo[channel] / (4 * pi);
+  const double transport = dipole.effective_transport_mm[channel];
+  KernelValue sum;
+  for (const double height : {double{dipole.mean_free_path_mm[channel]}, double{dipole.virtual_height_mm[channel]}}) {
+    const KernelValue k = source_kernel(height, transport, distance2_mm2);
+    sum.value += scale * height * k.value;
+    sum.first += scale * height * k.first;
+    sum.second += scale * height * k.second;
+  }
+  return sum;
+}
+
+glm::vec3 smooth_distance_mm(const optics::Dipole& dipole) {
+  return dipole.mean_free_path_mm / (1.0f + dipole.effective_transport_mm * dipole.mean_free_path_mm / 3.0f);
+}
+
+GaussianSum fit_gaussians(const optics::Dipole& dipole, int channel) {
+  constexpr int kTerms = GaussianSum::kTerms;
+  const double z = smooth_distance_mm(dipole)[channel];
+  const double zr = dipole.mean_free_path_mm[channel];
+  GaussianSum sum;
+  for (int k = 0; k < kTerms; ++k) sum.deviation_mm[k] = 0.4 * z * std::pow(std::sqrt(3.0), k);
+
+  // ∫ Rd dA, to weigh the tail against.
+  double total = 0;
+  for (double r = 0.01 * z; r < 1000 * z; r *= 1.05) total += 2 * pi * r * r * std::log(1.05) * dipole_kernel(dipole, channel, r * r).value;
+
+  // Normal equations of the weighted least squares.
+  double matrix[kTerms][kTerms] = {}, right[kTerms] = {};
+  constexpr int kSamples = 160;
+  for (int i = 0; i < kSamples; ++i) {
+    const double r = 0.03 * z * std::pow(4000.0, static_cast<double>(i) / (kSamples - 1));
+    const double rd = dipole_kernel(dipole, channel, r * r).value;
+    const double weight = 1 / (rd + 0.01 * total / (pi * (r * r + zr * zr)));
+    double row[kTerms];
+    for (int k = 0; k < kTerms; ++k) row[k] = weight * std::exp(-0.5 * r * r / (sum.deviation_mm[k] * sum.deviation_mm[k]));
+    for (int a = 0; a < kTerms; ++a) {
+      for (int b = 0; b < kTerms; ++b) matrix[a][b] += row[a] * row[b];
+      right[a] += row[a] * weight * rd;
+    }
+  }
+  // Coordinate descent on the non-negative orthant; the matrix is small and well enough conditioned.
+  for (int sweep = 0; sweep < 1000; ++sweep) {
+    for (int a = 0; a < kTerms; ++a) {
+      double residual = right[a];
+      for (int b = 0; b < kTerms; ++b) residual -= matrix[a][b] * sum.weight[b];
+      sum.weight[a] = std::max(0.0, sum.weight[a] + residual / matrix[a][a]);
+    }
+  }
+  return sum;
+}
+
+void KernelSet::set_material(const optics::Coefficients& material) {
+  dipole_ = optics::make_dipole(material);
+  const glm::vec3 smooth = smooth_distance_mm(dipole_);
+  smooth_mm_ = std::min({smooth.x, smooth.y, smooth.z});
+  largest_absorption_ = 0;
+  for (int c = 0; c < 3; ++c) {
+    gaussians_[c] = fit_gaussians(dipole_, c);
+    largest_absorption_ = std::max(largest_absorption_, dipole_.effective_transport_mm[c] * dipole_.mean_free_path_mm[c]);
+  }
+  diameter_mm_ = 0;
+}
+
+void KernelSet::prepare(float diameter_mm, const std::vector<uint8_t>& spacing_keys) {
+  // In steps of two, so that a deforming body keeps its tables.
+  const float diameter = std::exp2(std::ceil(std::log2(std::clamp(diameter_mm, 1e-6f, 1e18f))));
+  if (diameter != diameter_mm_) {
+    diameter_mm_ = diameter;
+    const double range = effective_range(dipole_, diameter);
+    domain_.scale = static_cast<float>(KernelDomain::kSmallest /
+                                       std::max(0.3 * smooth_mm_ * smooth_mm_, range * range / (0.9 * kTableSpan)));
+    for (int c = 0; c < 3; ++c) {
+      tabulate(domain_, c, [&](double distance2) { return dipole_kernel(dipole_, c, distance2); }, far_);
+    }
+    near_.fill(nullptr);
+  }
+  for (const uint8_t key : spacing_keys) {
+    if (!near_[key]) build(key);
+  }
+}
+
+void KernelSet::build(uint8_t key) {
+  const double spacing = spacing_of_key(key);
+  bool whole = true;
+  for (const GaussianSum& sum : gaussians_) whole = whole && carried_share(sum.deviation_mm[0], spacing) == 1;
+  local_response_[key] = glm::vec3(0);
+  if (whole) {
+    near_[key] = &far_;
+    return;
+  }
+  if (!built_[key]) built_[key] = std::make_unique<KernelTable>();
+  for (int c = 0; c < 3; ++c) {
+    std::array<double, GaussianSum::kTerms> rate{}, left_out{};
+    double response = 0;
+    for (size_t k = 0; k < left_out.size(); ++k) {
+      const double variance = gaussians_[c].deviation_mm[k] * gaussians_[c].deviation_mm[k];
+      rate[k] = 0.5 / variance;
+      left_out[k] = gaussians_[c].weight[k] * (1 - carried_share(gaussians_[c].deviation_mm[k], spacing));
+      response += left_out[k] * 2 * pi * variance;
+    }
+    local_response_[key][c] = static_cast<float>(response);
+    const auto near = [&](double distance2) {
+      KernelValue k = dipole_kernel(dipole_, c, distance2);
+      for (size_t i = 0; i < left_out.size(); ++i) {
+        if (left_out[i] == 0) continue;
+        const double gaussian = left_out[i] * std::exp(-rate[i] * distance2);
+        k.value -= gaussian;
+        k.first += rate[i] * gaussian;
+        k.second -= rate[i] * rate[i] * gaussian;
+      }
+      return k;
+    };
+    tabulate(domain_, c, near, *built_[key]);
+  }
+  near_[key] = built_[key].get();
+}
+
+}  // namespace diaphane::diffusion

@@ -1,0 +1,83 @@
+// Rd and its derivatives as tables small enough to be looked up from registers.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "diffusion/node_tree.h"
+#include "glm/vec3.hpp"
+#include "optics/dipole.h"
+
+namespace diaphane::diffusion {
+
+/// f(r²) and its first two derivatives in r².
+struct KernelValue {
+  double value = 0, first = 0, second = 0;
+};
+
+/// Rd of one channel at r² mm² (r² > −zr²), exactly.
+KernelValue dipole_kernel(const optics::Dipole& dipole, int channel, double distance2_mm2);
+
+/// z = zr/(1 + σ zr/3): the distance on which a channel's kernel is smooth, mm.
+glm::vec3 smooth_distance_mm(const optics::Dipole& dipole);
+
+/// Σ w_k e^(−r²/2σ_k²), σ_k = 0.4 z √3^k: Rd of one channel, with which its narrow part can be taken out.
+struct GaussianSum {
+  static constexpr int kTerms = 12;
+  std::array<double, kTerms> deviation_mm{};
+  std::array<double, kTerms> weight{};  ///< ≥ 0
+};
+GaussianSum fit_gaussians(const optics::Dipole& dipole, int channel);
+
+/// With u = scale·r² + 2, clamped to 2..2^17: f·u², f′·u³ and f″·u⁴ of each channel are cubics in u on eight segments of two
+/// octaves; the segment is what is left of u's exponent without its lowest bit.
+struct alignas(64) KernelTable {
+  static constexpr int kSegments = 8;
+  static constexpr int kCoefficients = 4;
+  float coefficient[3][3][kCoefficients][kSegments];  ///< [derivative][channel][power of u][segment]
+};
+
+/// Which r² the tables of a body cover.
+struct KernelDomain {
+  static constexpr float kSmallest = 2;
+  static constexpr float kLargest = 131071.99f;
+  float scale = 1;  ///< mm⁻²
+};
+
+/// Every table that a body of one material needs. Not thread-safe while prepare() runs.
+class KernelSet {
+ public:
+  /// Starts over with a material.
+  void set_material(const optics::Coefficients& material);
+  /// Builds what is missing for a body of `diameter_mm` whose leaves have the `spacing_keys`.
+  void prepare(float diameter_mm, const std::vector<uint8_t>& spacing_keys);
+
+  const KernelDomain& domain() const { return domain_; }
+  const KernelTable& far_table() const { return far_; }
+  /// Rd without what is narrower than a leaf's spacing.
+  const KernelTable& near_table(uint8_t spacing_key) const { return *near_[spacing_key]; }
+  /// What near_table leaves out, integrated over the plane: times the local irradiance it is radiosity.
+  const glm::vec3& local_response(uint8_t spacing_key) const { return local_response_[spacing_key]; }
+  /// The smallest smooth distance of the channels, mm.
+  float smooth_mm() const { return smooth_mm_; }
+  /// The largest σ·zr of the channels.
+  float largest_absorption() const { return largest_absorption_; }
+
+ private:
+  void build(uint8_t key);
+
+  optics::Dipole dipole_;
+  std::array<GaussianSum, 3> gaussians_;
+  float smooth_mm_ = 1;
+  float largest_absorption_ = 0;
+  float diameter_mm_ = 0;
+  KernelDomain domain_;
+  KernelTable far_;
+  std::array<const KernelTable*, kSpacingKeys> near_{};
+  std::array<glm::vec3, kSpacingKeys> local_response_{};
+  std::array<std::unique_ptr<KernelTable>, kSpacingKeys> built_;
+};
+
+}  // namespace diaphane::diffusion

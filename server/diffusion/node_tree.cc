@@ -1,0 +1,268 @@
+#include "diffusion/node_tree.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "diffusion/four.h"
+
+namespace diaphane::diffusion {
+namespace {
+
+constexpr uint32_t kChunkLevel = 4;
+// Gives nodes without area or flux a centroid.
+constexpr float kTinyWeight = 1e-25f;
+
+/// The k-th children of four siblings, for each k, as vectors across the siblings.
+struct Children {
+  Four x[4], y[4], z[4];
+};
+
+/// Reads row `field` of the four blocks below block `index`, turned so that lanes are parents. Blocks past the end repeat
+/// the first.
+void load_children(const NodeTree& tree, uint32_t level, uint32_t index, uint32_t field, Four (&by_child)[4]) {
+  const uint32_t blocks = tree.block_count(level - 1);
+  for (uint32_t j = 0; j < 4; ++j) {
+    const uint32_t child_block = 4 * index + j < blocks ? 4 * index + j : 4 * index;
+    by_child[j] = load4(tree.block(level - 1, child_block) + 4 * field);
+  }
+  transpose4(by_child[0], by_child[1], by_child[2], by_child[3]);
+}
+
+/// 1 where the parent's children exist, else 0.
+Four parent_exists(const NodeTree& tree, uint32_t level, uint32_t index) {
+  const uint32_t blocks = tree.block_count(level - 1);
+  Four exists{};
+  for (uint32_t j = 0; j < 4; ++j) exists[j] = 4 * index + j < blocks ? 1.0f : 0.0f;
+  return exists;
+}
+
+/// Slots 16·leaf + 4·j + k, as vectors across j, from structures that begin with four floats of interest at `offset`.
+template <class T>
+void load_slots(const T* slots, uint32_t offset, uint32_t k, Four (&fields)[4]) {
+  for (uint32_t j = 0; j < 4; ++j) fields[j] = load4(reinterpret_cast<const float*>(slots + 4 * j + k) + offset);
+  transpose4(fields[0], fields[1], fields[2], fields[3]);
+}
+
+struct GeometryChildren : Children {
+  Four area[4], spread2[4], radius[4];
+};
+
+void refit_geometry_block(const GeometryChildren& c, float* block) {
+  Four weight[4];
+  Four area{}, total{}, x{}, y{}, z{};
+  for (int k = 0; k < 4; ++k) {
+    weight[k] = c.area[k] + kTinyWeight;
+    area += c.area[k];
+    total += weight[k];
+    x += weight[k] * c.x[k];
+    y += weight[k] * c.y[k];
+    z += weight[k] * c.z[k];
+  }
+  const Four inverse = 1.0f / total;
+  x *= inverse, y *= inverse, z *= inverse;
+  Four spread2{}, radius{};
+  for (int k = 0; k < 4; ++k) {
+    const Four dx = c.x[k] - x, dy = c.y[k] - y, dz = c.z[k] - z;
+    const Four distance2 = dx * dx + dy * dy + dz * dz;
+    spread2 += weight[k] * (c.spread2[k] + distance2);
+    radius = max4(radius, c.radius[k] + sqrt4(distance2));
+  }
+  store4(block + 4 * kCentreX, x);
+  store4(block + 4 * kCentreY, y);
+  store4(block + 4 * kCentreZ, z);
+  store4(block + 4 * kArea, area);
+  store4(block + 4 * kSpread2, spread2 * inverse);
+  store4(block + 4 * kRadius, radius);
+}
+
+void refit_geometry_level1(NodeTree& tree, uint32_t leaf) {
+  GeometryChildren c{};
+  for (uint32_t k = 0; k < 4; ++k) {
+    Four fields[4];
+    load_slots(&tree.places[size_t{16} * leaf], 0, k, fields);
+    c.x[k] = fields[0], c.y[k] = fields[1], c.z[k] = fields[2], c.area[k] = fields[3];
+  }
+  refit_geometry_block(c, tree.block(1, leaf));
+}
+
+void refit_geometry_above(NodeTree& tree, uint32_t level, uint32_t index) {
+  GeometryChildren c;
+  load_children(tree, level, index, kCentreX, c.x);
+  load_children(tree, level, index, kCentreY, c.y);
+  load_children(tree, level, index, kCentreZ, c.z);
+  load_children(tree, level, index, kArea, c.area);
+  load_children(tree, level, index, kSpread2, c.spread2);
+  load_children(tree, level, index, kRadius, c.radius);
+  const Four exists = parent_exists(tree, level, index);
+  for (Four& area : c.area) area *= exists;
+  refit_geometry_block(c, tree.block(level, index));
+}
+
+/// The radius of a leaf from its vertices (a bound through the children's spheres is a third larger), and its spacing.
+void measure_leaf(NodeTree& tree, uint32_t leaf) {
+  float* block = tree.block(NodeTree::kLeafLevel, leaf / 4) + leaf % 4;
+  const glm::vec3 centre(block[4 * kCentreX], block[4 * kCentreY], block[4 * kCentreZ]);
+  const Place* places = &tree.places[size_t{16} * leaf];
+  float radius2 = 0, largest = 0, sum = 0;
+  for (int i = 0; i < 16; ++i) {
+    const glm::vec3 way = places[i].position_mm - centre;
+    radius2 = std::max(radius2, way.x * way.x + way.y * way.y + way.z * way.z);
+    largest = std::max(largest, places[i].area_mm2);
+    sum += places[i].area_mm2;
+  }
+  block[4 * kRadius] = std::sqrt(radius2);
+  const uint32_t real = std::min(16u, tree.slot_count() - 16 * leaf);
+  tree.spacing_keys[leaf] = spacing_key(0.5f * (sum / static_cast<float>(real) + largest));
+}
+
+struct FluxChildren : Children {
+  Four flux[3][4];
+  Four covariance[6][4];
+  Four dipole[9][4];
+};
+
+void refit_flux_block(const FluxChildren& c, bool coloured, float* block) {
+  Four weight[4];
+  Four total{}, x{}, y{}, z{};
+  for (int k = 0; k < 4; ++k) {
+    weight[k] = c.flux[0][k] + c.flux[1][k] + c.flux[2][k] + kTinyWeight;
+    total += weight[k];
+    x += weight[k] * c.x[k];
+    y += weight[k] * c.y[k];
+    z += weight[k] * c.z[k];
+  }
+  const Four inverse = 1.0f / total;
+  x *= inverse, y *= inverse, z *= inverse;
+  store4(block + 4 * kFluxX, x);
+  store4(block + 4 * kFluxY, y);
+  store4(block + 4 * kFluxZ, z);
+  Four covariance[6] = {}, dipole[9] = {};
+  for (int k = 0; k < 4; ++k) {
+    const Four dx = c.x[k] - x, dy = c.y[k] - y, dz = c.z[k] - z;
+    const Four moments[6] = {dx * dx, dy * dy, dz * dz, 2.0f * dx * dy, 2.0f * dx * dz, 2.0f * dy * dz};
+    for (int m = 0; m < 6; ++m) covariance[m] += weight[k] * (c.covariance[m][k] + moments[m]);
+    if (!coloured) continue;
+    for (int channel = 0; channel < 3; ++channel) {
+      dipole[3 * channel + 0] += c.dipole[3 * channel + 0][k] + c.flux[channel][k] * dx;
+      dipole[3 * channel + 1] += c.dipole[3 * channel + 1][k] + c.flux[channel][k] * dy;
+      dipole[3 * channel + 2] += c.dipole[3 * channel + 2][k] + c.flux[channel][k] * dz;
+    }
+  }
+  for (uint32_t channel = 0; channel < 3; ++channel) {
+    store4(block + 4 * (kFluxR + channel), c.flux[channel][0] + c.flux[channel][1] + c.flux[channel][2] + c.flux[channel][3]);
+  }
+  for (uint32_t m = 0; m < 6; ++m) store4(block + 4 * (kCovXX + m), covariance[m] * inverse);
+  if (!coloured) return;
+  for (uint32_t m = 0; m < 9; ++m) store4(block + 4 * (kDipole + m), dipole[m]);
+}
+
+void refit_flux_level1(NodeTree& tree, uint32_t leaf, bool coloured) {
+  FluxChildren c{};
+  for (uint32_t k = 0; k < 4; ++k) {
+    Four low[4], high[4];
+    load_slots(&tree.sources[size_t{16} * leaf], 0, k, low);
+    load_slots(&tree.sources[size_t{16} * leaf], 4, k, high);
+    c.x[k] = low[0], c.y[k] = low[1], c.z[k] = low[2];
+    c.flux[0][k] = low[3], c.flux[1][k] = high[0], c.flux[2][k] = high[1];
+  }
+  refit_flux_block(c, coloured, tree.block(1, leaf));
+}
+
+void refit_flux_above(NodeTree& tree, uint32_t level, uint32_t index, bool coloured) {
+  FluxChildren c;
+  load_children(tree, level, index, kFluxX, c.x);
+  load_children(tree, level, index, kFluxY, c.y);
+  load_children(tree, level, index, kFluxZ, c.z);
+  const Four exists = parent_exists(tree, level, index);
+  for (uint32_t channel = 0; channel < 3; ++channel) {
+    load_children(tree, level, index, kFluxR + channel, c.flux[channel]);
+    for (Four& flux : c.flux[channel]) flux *= exists;
+  }
+  for (uint32_t m = 0; m < 6; ++m) load_children(tree, level, index, kCovXX + m, c.covariance[m]);
+  if (coloured) {
+    for (uint32_t m = 0; m < 9; ++m) {
+      load_children(tree, level, index, kDipole + m, c.dipole[m]);
+      for (Four& moment : c.dipole[m]) moment *= exists;
+    }
+  }
+  refit_flux_block(c, coloured, tree.block(level, index));
+}
+
+/// Calls visit(level, block) for the blocks above level 1 whose slots are in `chunk`, from below.
+template <class Visit>
+void for_blocks_of_chunk(const NodeTree& tree, uint32_t chunk, const Visit& visit) {
+  for (uint32_t level = 2; level < kChunkLevel && level <= tree.top_level(); ++level) {
+    const uint32_t per_chunk = 1u << (2 * (kChunkLevel - 1 - level));
+    const uint32_t end = std::min((chunk + 1) * per_chunk, tree.block_count(level));
+    for (uint32_t index = chunk * per_chunk; index < end; ++index) visit(level, index);
+  }
+}
+
+template <class Visit>
+void for_blocks_of_top(const NodeTree& tree, const Visit& visit) {
+  for (uint32_t level = kChunkLevel; level <= tree.top_level(); ++level) {
+    for (uint32_t index = 0; index < tree.block_count(level); ++index) visit(level, index);
+  }
+}
+
+uint32_t first_leaf(uint32_t chunk) { return chunk * (NodeTree::kChunkSlots / 16); }
+uint32_t end_leaf(const NodeTree& tree, uint32_t chunk) { return std::min(first_leaf(chunk + 1), tree.leaf_count()); }
+
+constexpr int kKeyBias = (127 - 32) << 1;
+
+}  // namespace
+
+uint8_t spacing_key(float spacing2_mm2) {
+  // The exponent and the mantissa's top bit.
+  const auto half_octave = static_cast<int>(std::bit_cast<uint32_t>(std::max(spacing2_mm2, 0.0f)) >> 22);
+  return static_cast<uint8_t>(std::clamp(half_octave - kKeyBias, 0, static_cast<int>(kSpacingKeys) - 1));
+}
+
+float spacing_of_key(uint8_t key) {
+  const auto low = std::bit_cast<float>(static_cast<uint32_t>(key + kKeyBias) << 22);
+  const auto high = std::bit_cast<float>(static_cast<uint32_t>(key + kKeyBias + 1) << 22);
+  return std::sqrt(std::sqrt(low * high));
+}
+
+NodeTree::NodeTree(uint32_t slot_count) : slot_count_(slot_count) {
+  uint32_t top = kLeafLevel;
+  while (node_count(top) > 1) ++top;
+  blocks_.resize(top + 1);
+  for (uint32_t level = 1; level <= top; ++level) blocks_[level].assign(size_t{block_count(level)} * kBlockFloats, 0.0f);
+  places.resize(size_t{16} * leaf_count());
+  sources.resize(size_t{16} * leaf_count());
+  spacing_keys.resize(leaf_count());
+}
+
+void NodeTree::refit_geometry_chunk(uint32_t chunk) {
+  for (uint32_t leaf = first_leaf(chunk); leaf < end_leaf(*this, chunk); ++leaf) refit_geometry_level1(*this, leaf);
+  for_blocks_of_chunk(*this, chunk, [&](uint32_t level, uint32_t index) {
+    refit_geometry_above(*this, level, index);
+    if (level != kLeafLevel) return;
+    for (uint32_t leaf = 4 * index; leaf < std::min(4 * index + 4, leaf_count()); ++leaf) measure_leaf(*this, leaf);
+  });
+}
+
+void NodeTree::refit_geometry_top() {
+  for_blocks_of_top(*this, [&](uint32_t level, uint32_t index) { refit_geometry_above(*this, level, index); });
+}
+
+void NodeTree::refit_flux_chunk(uint32_t chunk, bool coloured) {
+  for (uint32_t leaf = first_leaf(chunk); leaf < end_leaf(*this, chunk); ++leaf) {
+    refit_flux_level1(*this, leaf, coloured);
+  }
+  for_blocks_of_chunk(*this, chunk, [&](uint32_t level, uint32_t index) { refit_flux_above(*this, level, index, coloured); });
+}
+
+void NodeTree::refit_flux_top(bool coloured) {
+  for_blocks_of_top(*this, [&](uint32_t level, uint32_t index) { refit_flux_above(*this, level, index, coloured); });
+}
+
+size_t NodeTree::bytes() const {
+  size_t sum = places.size() * sizeof(Place) + sources.size() * sizeof(Source) + spacing_keys.size();
+  for (const std::vector<float>& level : blocks_) sum += level.size() * sizeof(float);
+  return sum;
+}
+
+}  // namespace diaphane::diffusion

@@ -1,0 +1,34 @@
+#include "diffusion/simd_level.h"
+
+#include "hwy/highway.h"
+
+namespace diaphane::diffusion {
+namespace {
+
+std::vector<int64_t> usable_targets() { return hwy::SupportedAndGeneratedTargets(); }
+
+}  // namespace
+
+std::string simd_level() { return hwy::TargetName(usable_targets().front()); }
+
+std::vector<std::string> simd_levels() {
+  std::vector<std::string> names;
+  for (const int64_t target : usable_targets()) names.emplace_back(hwy::TargetName(target));
+  return names;
+}
+
+bool choose_simd_level(const std::string& level) {
+  const std::string before = simd_level();
+  hwy::SetSupportedTargetsForTest(0);
+  int64_t chosen = 0;
+  for (const int64_t target : usable_targets()) {
+    if (level == hwy::TargetName(target)) chosen = target;
+  }
+  const bool known = level.empty() || chosen != 0;
+  if (!known && simd_level() != before) return choose_simd_level(before), false;
+  hwy::SetSupportedTargetsForTest(chosen);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  return known;
+}
+
+}  // namespace diaphane::diffusion

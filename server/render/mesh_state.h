@@ -1,0 +1,28 @@
+// Everything that the renderer keeps of one mesh between frames.
+#pragma once
+
+#include <optional>
+
+#include "render/cube_atlas.h"
+#include "render/gpu_mesh.h"
+#include "render/placed_mesh.h"
+#include "render/surface_light.h"
+
+namespace diaphane::render {
+
+/// Render thread only.
+struct MeshState {
+  PlacedMesh placed;
+  SurfaceLight light;
+  GpuMesh gpu;
+  std::optional<CubeAtlas> atlas;
+};
+
+/// A mesh of the frame that is being drawn.
+struct DrawnMesh {
+  const scene::Mesh* mesh;
+  MeshState* state;
+  optics::Coefficients material;
+};
+
+}  // namespace diaphane::render

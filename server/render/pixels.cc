@@ -1,0 +1,43 @@
+#include "render/pixels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace diaphane::render {
+namespace {
+
+/// IEC 61966-2-1.
+float encode_srgb(float linear) {
+  const float v = std::clamp(linear, 0.0f, 1.0f);
+  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
+}
+
+uint8_t to_byte(float value) { return static_cast<uint8_t>(std::lround(255 * value)); }
+
+}  // namespace
+
+Canvas make_canvas(Frame& frame, const FrameRequest& request) {
+  const size_t values = size_t{4} * request.width_px * request.height_px;
+  if (request.format == PixelFormat::kSrgb8) {
+    auto& image = frame.image.emplace<base::Image8>(
+        base::Image8{request.width_px, request.height_px, std::vector<uint8_t>(values)});
+    return {image.rgba.data(), request.width_px, request.height_px, 4};
+  }
+  auto& image = frame.image.emplace<base::ImageF>(
+      base::ImageF{request.width_px, request.height_px, {"R", "G", "B", "A"}, std::vector<float>(values)});
+  return {reinterpret_cast<uint8_t*>(image.values.data()), request.width_px, request.height_px, 4 * sizeof(float)};
+}
+
+void store_pixels(std::span<const glm::vec4> radiance, float radiance_scale, PixelFormat format, uint8_t* pixels) {
+  if (format == PixelFormat::kLinearFloat) {
+    std::memcpy(pixels, radiance.data(), radiance.size_bytes());
+    return;
+  }
+  for (size_t i = 0; i < radiance.size(); ++i) {
+    for (int c = 0; c < 3; ++c) pixels[4 * i + c] = to_byte(encode_srgb(radiance_scale * radiance[i][c]));
+    pixels[4 * i + 3] = to_byte(radiance[i].a);
+  }
+}
+
+}  // namespace diaphane::render

@@ -1,0 +1,59 @@
+// Draws one revision of a scene from one view: stages, then tiles.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "render/frame.h"
+#include "render/mesh_state.h"
+#include "render/shading.h"
+#include "render/shadow.h"
+#include "render/tiles.h"
+#include "render/view_targets.h"
+
+namespace diaphane::render {
+
+/// Keeps meshes, atlases and targets from frame to frame. Render thread only, with the context current.
+class ScenePainter {
+ public:
+  explicit ScenePainter(Shading shading) : shading_(std::move(shading)) {}
+
+  /// Errors: as FrameRenderer::render.
+  absl::StatusOr<Frame> paint(const FrameRequest& request, const std::atomic<bool>& cancelled);
+
+ private:
+  /// What one frame's stages share.
+  struct Job {
+    const FrameRequest& request;
+    const std::atomic<bool>& cancelled;
+    std::vector<DrawnMesh> meshes;
+    geometry::Bounds bounds_mm;
+    std::vector<LightStorage> lights;
+    ViewUniforms view;
+    StageClock clock;
+  };
+
+  void gather_meshes(Job& job);
+  void bound_atlases(const Job& job);
+  void update_shadows(Job& job);
+  absl::Status update(Job& job);
+  void update_atlas(const DrawnMesh& drawn, Job& job);
+  void bind_view(const Job& job, size_t mesh_index) const;
+  void set_viewport(const Job& job, const Tile& tile) const;
+  void draw_gbuffer(Job& job, const Tile& tile);
+  absl::Status draw_tile(Job& job, const Tile& tile, uint8_t* pixels);
+  absl::Status draw_reference_tile(Job& job, const Tile& tile, uint8_t* pixels);
+
+  Shading shading_;
+  std::map<std::string, MeshState> meshes_;
+  std::optional<ViewTargets> targets_;
+  ShadowScene shadows_;
+  Memo<std::vector<std::pair<std::string, uint64_t>>> shadow_reads_;  // every mesh's name and place
+  uint64_t shadows_generation_ = 0;
+};
+
+}  // namespace diaphane::render

@@ -1,5 +1,6 @@
 #include "render/brute_force.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -19,18 +20,19 @@ absl::StatusOr<std::vector<glm::vec3>> brute_force_radiance(const BruteForceBody
     for (const LightStorage& light : body.lights) {
       const glm::vec3 entering = entering_irradiance(light, position, normal, refractive_index);
       if (entering == glm::vec3(0)) continue;
-      float seen = 1;
-      if (body.shadows != nullptr) body.shadows->visibility(light, {&position, 1}, {&normal, 1}, {&seen, 1});
-      e += seen * entering;
+      e += (body.shadows == nullptr ? 1.0f : body.shadows->visibility_at(light, position, normal)) * entering;
     }
     return e;
   };
+  const optics::Dipole dipole = optics::make_dipole(body.material);
+  const glm::vec3& l = dipole.mean_free_path_mm;
+  const diffusion::SurfelOptions sampling{.splits = 1, .spacing_mm = 0.5f * std::min({l.x, l.y, l.z})};
   const diffusion::Surfels surfels = diffusion::sample_surface(body.topology.triangles, body.shape.positions_mm,
-                                                               body.shape.normals, irradiance, {.splits = 2});
+                                                               body.shape.normals, irradiance, sampling);
   diffusion::ReferenceOptions options;
   options.cancelled = &cancelled;
   absl::StatusOr<std::vector<glm::vec3>> radiosity =
-      diffusion::reference_radiosity(optics::make_dipole(body.material), surfels, positions_mm, options);
+      diffusion::reference_radiosity(dipole, surfels, positions_mm, options);
   if (!radiosity.ok()) return radiosity;
   for (size_t i = 0; i < radiosity->size(); ++i) {
     const float cosine = std::abs(glm::dot(normals[i], glm::normalize(eye_mm - positions_mm[i])));

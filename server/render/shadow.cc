@@ -25,10 +25,18 @@ glm::vec3 perpendicular(const glm::vec3& axis) {
   return glm::normalize(glm::cross(axis, other));
 }
 
-/// Sample `index` of a light: its centre, or one of a spiral's points on the disc that it shows to `point_mm`.
-glm::vec3 towards_sample(const LightStorage& light, const glm::vec3& point_mm, int index, bool soft) {
+bool directional(const LightStorage& light) { return light.power.a != 0; }
+
+int samples_of(const LightStorage& light) { return !directional(light) && light.shape.y > 0 ? kDiscSamples : 1; }
+
+/// Where a ray of towards_sample() ends, in lengths of it.
+float farthest(const LightStorage& light) { return directional(light) ? std::numeric_limits<float>::infinity() : 1.0f; }
+
+/// To sample `index` of a light: its centre, or one of a spiral's points on the disc that it shows to `point_mm`.
+glm::vec3 towards_sample(const LightStorage& light, const glm::vec3& point_mm, int index) {
+  if (directional(light)) return glm::vec3(light.position_mm);
   const glm::vec3 to_centre = glm::vec3(light.position_mm) - point_mm;
-  if (!soft) return to_centre;
+  if (samples_of(light) == 1) return to_centre;
   constexpr float kGoldenAngle = 2.39996323f;
   const glm::vec3 axis = to_centre / std::max(glm::length(to_centre), 1e-12f);
   const glm::vec3 u = perpendicular(axis);
@@ -111,11 +119,28 @@ void ShadowScene::commit() {
   embree_->offset_mm = kOffset * size;
 }
 
+float ShadowScene::visibility_at(const LightStorage& light, const glm::vec3& point_mm, const glm::vec3& normal) const {
+  const int samples = samples_of(light);
+  float seen = 0;
+  for (int sample = 0; sample < samples; ++sample) {
+    const glm::vec3 start = point_mm + embree_->offset_mm * normal;
+    const glm::vec3 direction = towards_sample(light, start, sample);
+    RTCRay ray{};
+    ray.org_x = start.x, ray.org_y = start.y, ray.org_z = start.z;
+    ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
+    ray.tfar = farthest(light);
+    ray.mask = ~0u;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(embree_->scene, &context, &ray);
+    seen += ray.tfar >= 0 ? 1.0f : 0.0f;
+  }
+  return seen / static_cast<float>(samples);
+}
+
 void ShadowScene::visibility(const LightStorage& light, std::span<const glm::vec3> points_mm,
                              std::span<const glm::vec3> facet_normals, std::span<float> share) const {
-  const bool directional = light.power.a != 0;
-  const bool soft = !directional && light.shape.y > 0;
-  const int samples = soft ? kDiscSamples : 1;
+  const int samples = samples_of(light);
   const size_t packets = (points_mm.size() + kPacket - 1) / kPacket;
   tbb::parallel_for(tbb::blocked_range<size_t>(0, packets, 64), [&](const tbb::blocked_range<size_t>& range) {
     for (size_t packet = range.begin(); packet != range.end(); ++packet) {
@@ -123,21 +148,18 @@ void ShadowScene::visibility(const LightStorage& light, std::span<const glm::vec
       const size_t count = std::min(kPacket, points_mm.size() - first);
       float seen[kPacket] = {};
       for (int sample = 0; sample < samples; ++sample) {
-        alignas(64) RTCRay16 rays;
+        alignas(64) RTCRay16 rays{};
         alignas(64) int valid[kPacket] = {};
-        for (size_t i = 0; i < count; ++i) {
-          const glm::vec3 start = points_mm[first + i] + embree_->offset_mm * facet_normals[first + i];
-          const glm::vec3 direction =
-              directional ? glm::vec3(light.position_mm) : towards_sample(light, start, sample, soft);
-          valid[i] = -1;
+        for (size_t i = 0; i < kPacket; ++i) {
+          // Lanes without a point repeat the first one: Embree checks them all.
+          const size_t point = first + (i < count ? i : 0);
+          const glm::vec3 start = points_mm[point] + embree_->offset_mm * facet_normals[point];
+          const glm::vec3 direction = towards_sample(light, start, sample);
+          valid[i] = i < count ? -1 : 0;
           rays.org_x[i] = start.x, rays.org_y[i] = start.y, rays.org_z[i] = start.z;
           rays.dir_x[i] = direction.x, rays.dir_y[i] = direction.y, rays.dir_z[i] = direction.z;
-          rays.tnear[i] = 0;
-          rays.tfar[i] = directional ? std::numeric_limits<float>::infinity() : 1.0f;
-          rays.time[i] = 0;
+          rays.tfar[i] = farthest(light);
           rays.mask[i] = ~0u;
-          rays.id[i] = 0;
-          rays.flags[i] = 0;
         }
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);

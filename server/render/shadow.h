@@ -31,6 +31,8 @@ class ShadowScene {
   /// Hard for a light without a radius; else the share of 16 points of its disc.
   void visibility(const LightStorage& light, std::span<const glm::vec3> points_mm,
                   std::span<const glm::vec3> facet_normals, std::span<float> share) const;
+  /// The same at one point, from any thread.
+  float visibility_at(const LightStorage& light, const glm::vec3& point_mm, const glm::vec3& normal) const;
 
  private:
   struct Embree;

@@ -33,4 +33,9 @@ void to_proto(const scene::Light& light, v1::Light& message) {
   to_proto(point.intensity_w_sr, *message.mutable_point()->mutable_intensity());
 }
 
+void to_proto(const scene::Changed<scene::Light>& changed, v1::LightResponse& message) {
+  to_proto(changed.value, *message.mutable_light());
+  message.set_scene_revision(changed.scene_revision);
+}
+
 }  // namespace diaphane::service

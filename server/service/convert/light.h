@@ -2,6 +2,7 @@
 
 #include "absl/status/statusor.h"
 #include "diaphane/v1/light.pb.h"
+#include "diaphane/v1/scene_service.pb.h"
 #include "google/protobuf/field_mask.pb.h"
 #include "scene/scene_store.h"
 
@@ -13,5 +14,6 @@ absl::StatusOr<scene::PointLight> from_proto(const v1::Light& message);
 absl::StatusOr<scene::LightPatch> from_proto(const v1::Light& message, const google::protobuf::FieldMask& mask);
 
 void to_proto(const scene::Light& light, v1::Light& message);
+void to_proto(const scene::Changed<scene::Light>& changed, v1::LightResponse& message);
 
 }  // namespace diaphane::service

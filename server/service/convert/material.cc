@@ -81,6 +81,11 @@ void to_proto(const scene::Material& material, v1::Material& message) {
   to_proto(material.coefficients, *message.mutable_resolved());
 }
 
+void to_proto(const scene::Changed<scene::Material>& changed, v1::MaterialResponse& message) {
+  to_proto(changed.value, *message.mutable_material());
+  message.set_scene_revision(changed.scene_revision);
+}
+
 void to_proto(const optics::MaterialPreset& preset, v1::MaterialPreset& message) {
   message.set_name(std::string(preset.name));
   to_proto(preset.coefficients, *message.mutable_coefficients());

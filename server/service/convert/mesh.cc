@@ -77,4 +77,9 @@ void to_proto(const scene::Mesh& mesh, v1::Mesh& message) {
   message.set_positions_revision(mesh.positions_revision);
 }
 
+void to_proto(const scene::Changed<scene::Mesh>& changed, v1::MeshResponse& message) {
+  to_proto(changed.value, *message.mutable_mesh());
+  message.set_scene_revision(changed.scene_revision);
+}
+
 }  // namespace diaphane::service

@@ -30,14 +30,14 @@ absl::StatusOr<scene::ScenePatch> from_proto(const v1::Scene& message, const goo
   return patch;
 }
 
-void to_proto(const scene::SceneSnapshot& scene, v1::Scene& message) {
-  message.set_name(scene.name);
-  message.set_display_name(scene.display_name);
-  message.set_millimetres_per_unit(scene.millimetres_per_unit);
-  message.set_revision(scene.revision);
-  message.set_mesh_count(static_cast<uint32_t>(scene.meshes.size()));
-  message.set_material_count(static_cast<uint32_t>(scene.materials.size()));
-  message.set_light_count(static_cast<uint32_t>(scene.lights.size()));
+void to_proto(const scene::SnapshotPtr& scene, v1::Scene& message) {
+  message.set_name(scene->name);
+  message.set_display_name(scene->display_name);
+  message.set_millimetres_per_unit(scene->millimetres_per_unit);
+  message.set_revision(scene->revision);
+  message.set_mesh_count(static_cast<uint32_t>(scene->meshes.size()));
+  message.set_material_count(static_cast<uint32_t>(scene->materials.size()));
+  message.set_light_count(static_cast<uint32_t>(scene->lights.size()));
 }
 
 }  // namespace diaphane::service

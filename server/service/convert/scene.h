@@ -13,6 +13,6 @@ absl::StatusOr<scene::ScenePatch> from_proto(const v1::Scene& message);
 /// The values of `message` that `mask` names: display_name, millimetres_per_unit.
 absl::StatusOr<scene::ScenePatch> from_proto(const v1::Scene& message, const google::protobuf::FieldMask& mask);
 
-void to_proto(const scene::SceneSnapshot& scene, v1::Scene& message);
+void to_proto(const scene::SnapshotPtr& scene, v1::Scene& message);
 
 }  // namespace diaphane::service

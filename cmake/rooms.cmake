@@ -6,10 +6,11 @@ if(DIAPHANE_SANITIZE)
   target_link_options(diaphane_flags INTERFACE -fsanitize=${DIAPHANE_SANITIZE})
 endif()
 
-# diaphane_room(NAME dependency...): one server room, every .cc below its folder, one library (headers alone where there
-# is no .cc).
+# diaphane_room(NAME dependency...): one server room, every .cc below its folder but main.cc, one library (headers alone
+# where there is no .cc).
 function(diaphane_room name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cc)
+  list(FILTER sources EXCLUDE REGEX "/main\\.cc$")
   if(sources)
     add_library(diaphane_${name} STATIC ${sources})
     target_include_directories(diaphane_${name} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})

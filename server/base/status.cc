@@ -9,19 +9,34 @@ namespace {
 
 constexpr char kPayloadUrl[] = "diaphane/field_violation";
 constexpr char kSeparator = '\x1f';
+constexpr size_t kLongestValue = 120;
+
+// A value as an error shows it: what a client sent, short enough for a trailer and without control characters.
+std::string shown(std::string_view value) {
+  std::string text(value.substr(0, kLongestValue));
+  if (value.size() > kLongestValue) {
+    // Not in the middle of a UTF-8 sequence, whose later bytes are 10xxxxxx.
+    while (!text.empty() && (value[text.size()] & 0xC0) == 0x80) text.pop_back();
+    text += "…";
+  }
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  return text;
+}
 
 }  // namespace
 
 absl::Status field_error(absl::StatusCode code, const FieldViolation& violation) {
-  absl::Status status(code, fmt::format("{}: must be {}, got {}", violation.field, violation.range, violation.value));
-  status.SetPayload(kPayloadUrl, absl::Cord(fmt::format("{}{}{}{}{}", violation.field, kSeparator, violation.value,
-                                                        kSeparator, violation.range)));
+  const std::string value = shown(violation.value);
+  absl::Status status(code, fmt::format("{}: must be {}, got {}", violation.field, violation.range, value));
+  status.SetPayload(kPayloadUrl, absl::Cord(fmt::format("{}{}{}{}{}", violation.field, kSeparator, value, kSeparator,
+                                                        violation.range)));
   return status;
 }
 
 absl::Status invalid_field(std::string_view field, std::string_view range, std::string_view value) {
-  return field_error(absl::StatusCode::kInvalidArgument,
-                     {std::string(field), std::string(value), std::string(range)});
+  return field_error(absl::StatusCode::kInvalidArgument, {std::string(field), std::string(value), std::string(range)});
 }
 
 absl::Status invalid_field(std::string_view field, std::string_view range, double value) {

@@ -11,14 +11,16 @@
 
 namespace diaphane::base {
 
-/// One refused field. `field` is the path in the contract ("size.width_px"), `value` what was given, `range` what is allowed.
+/// One refused field. `field` is the path in the contract ("size.width_px"), `value` what was given, `range` what is
+/// allowed.
 struct FieldViolation {
   std::string field;
   std::string value;
   std::string range;
 };
 
-/// INVALID_ARGUMENT "FIELD: must be RANGE, got VALUE", with the violation attached. Thread-safe.
+/// INVALID_ARGUMENT "FIELD: must be RANGE, got VALUE", with the violation attached. A long value is cut and control
+/// characters are replaced: a client may have sent it. Thread-safe.
 absl::Status invalid_field(std::string_view field, std::string_view range, std::string_view value);
 absl::Status invalid_field(std::string_view field, std::string_view range, double value);
 

@@ -19,6 +19,16 @@ TEST(FieldError, CarriesTheViolationAsData) {
   EXPECT_EQ(violation.range, "at most 8");
 }
 
+TEST(FieldError, CutsLongValuesBetweenCharacters) {
+  std::string value(119, 'a');
+  value += "é and more";
+  EXPECT_EQ(field_violation(invalid_field("name", "short", value)).value, std::string(119, 'a') + "…");
+}
+
+TEST(FieldError, ReplacesControlCharacters) {
+  EXPECT_EQ(field_violation(invalid_field("name", "text", "a\x1f\n\x7f")).value, "a???");
+}
+
 TEST(FieldError, OtherStatusesCarryNone) { EXPECT_EQ(field_violation(absl::InternalError("x")).field, ""); }
 
 }  // namespace

@@ -1,0 +1,33 @@
+#include "app/process.h"
+
+#include <sys/resource.h>
+
+#include "base/log.h"
+#include "grpc/support/log.h"
+
+namespace diaphane::app {
+namespace {
+
+void log_message(gpr_log_func_args* args) {
+  switch (args->severity) {
+    case GPR_LOG_SEVERITY_ERROR:
+      return spdlog::warn("grpc: {}", args->message);
+    case GPR_LOG_SEVERITY_INFO:
+      return spdlog::info("grpc: {}", args->message);
+    case GPR_LOG_SEVERITY_DEBUG:
+      return spdlog::debug("grpc: {}", args->message);
+  }
+}
+
+}  // namespace
+
+void raise_file_limit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  if (setrlimit(RLIMIT_NOFILE, &limit) != 0) spdlog::warn("open files stay limited limit={}", limit.rlim_cur);
+}
+
+void log_grpc_messages() { gpr_set_log_function(log_message); }
+
+}  // namespace diaphane::app

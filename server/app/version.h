@@ -1,0 +1,7 @@
+#pragma once
+
+namespace diaphane::app {
+
+inline constexpr char kVersion[] = DIAPHANE_VERSION;
+
+}  // namespace diaphane::app

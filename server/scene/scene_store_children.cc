@@ -1,0 +1,113 @@
+// Materials and lights of the SceneStore.
+#include "scene/children.h"
+#include "scene/scene_store.h"
+
+namespace diaphane::scene {
+namespace {
+
+void apply(const LightPatch& patch, PointLight& light) {
+  if (patch.position.has_value()) light.position = *patch.position;
+  if (patch.intensity_w_sr.has_value()) light.intensity_w_sr = *patch.intensity_w_sr;
+}
+
+}  // namespace
+
+absl::StatusOr<Changed<Material>> SceneStore::create_material(const Reference& parent, const MaterialModel& model) {
+  Material created{{}, model.preset, model.coefficients};
+  const auto scene = mutate(parent, [&](SceneSnapshot& draft) {
+    absl::Status room = check_room_for_one(draft.materials, Collection::kMaterials, limits_.max_materials_per_scene);
+    if (!room.ok()) return room;
+    created.name = make_child_name(draft.name, Collection::kMaterials, draft.revision);
+    draft.materials.push_back(created);
+    return absl::OkStatus();
+  });
+  if (!scene.ok()) return scene.status();
+  return Changed<Material>{std::move(created), (*scene)->revision};
+}
+
+absl::StatusOr<Material> SceneStore::material(const Reference& material) const {
+  const auto scene = parent_of(material, Collection::kMaterials);
+  if (!scene.ok()) return scene.status();
+  const auto found = find_child((*scene)->materials, material.name);
+  if (found == (*scene)->materials.end()) return not_found(material, "material");
+  return *found;
+}
+
+absl::StatusOr<Changed<Material>> SceneStore::update_material(const Reference& material, const MaterialModel& model) {
+  Changed<Material> changed;
+  const auto scene = mutate_parent(material, Collection::kMaterials, [&](SceneSnapshot& draft) {
+    const auto found = find_child(draft.materials, material.name);
+    if (found == draft.materials.end()) return not_found(material, "material");
+    found->preset = model.preset;
+    found->coefficients = model.coefficients;
+    changed = {*found, draft.revision};
+    return absl::OkStatus();
+  });
+  if (!scene.ok()) return scene.status();
+  return changed;
+}
+
+absl::StatusOr<uint64_t> SceneStore::delete_material(const Reference& material) {
+  const auto scene = mutate_parent(material, Collection::kMaterials, [&](SceneSnapshot& draft) {
+    const auto found = find_child(draft.materials, material.name);
+    if (found == draft.materials.end()) return not_found(material, "material");
+    for (const auto& mesh : draft.meshes) {
+      if (mesh->material == material.name) {
+        return base::field_error(absl::StatusCode::kFailedPrecondition,
+                                 {std::string(material.field), std::string(material.name),
+                                  fmt::format("used by no mesh (is used by {})", mesh->name)});
+      }
+    }
+    draft.materials.erase(found);
+    return absl::OkStatus();
+  });
+  if (!scene.ok()) return scene.status();
+  return (*scene)->revision;
+}
+
+absl::StatusOr<Changed<Light>> SceneStore::create_light(const Reference& parent, const PointLight& light) {
+  Light created{{}, light};
+  const auto scene = mutate(parent, [&](SceneSnapshot& draft) {
+    absl::Status room = check_room_for_one(draft.lights, Collection::kLights, limits_.max_lights_per_scene);
+    if (!room.ok()) return room;
+    created.name = make_child_name(draft.name, Collection::kLights, draft.revision);
+    draft.lights.push_back(created);
+    return absl::OkStatus();
+  });
+  if (!scene.ok()) return scene.status();
+  return Changed<Light>{std::move(created), (*scene)->revision};
+}
+
+absl::StatusOr<Light> SceneStore::light(const Reference& light) const {
+  const auto scene = parent_of(light, Collection::kLights);
+  if (!scene.ok()) return scene.status();
+  const auto found = find_child((*scene)->lights, light.name);
+  if (found == (*scene)->lights.end()) return not_found(light, "light");
+  return *found;
+}
+
+absl::StatusOr<Changed<Light>> SceneStore::update_light(const Reference& light, const LightPatch& patch) {
+  Changed<Light> changed;
+  const auto scene = mutate_parent(light, Collection::kLights, [&](SceneSnapshot& draft) {
+    const auto found = find_child(draft.lights, light.name);
+    if (found == draft.lights.end()) return not_found(light, "light");
+    apply(patch, std::get<PointLight>(found->kind));
+    changed = {*found, draft.revision};
+    return absl::OkStatus();
+  });
+  if (!scene.ok()) return scene.status();
+  return changed;
+}
+
+absl::StatusOr<uint64_t> SceneStore::delete_light(const Reference& light) {
+  const auto scene = mutate_parent(light, Collection::kLights, [&](SceneSnapshot& draft) {
+    const auto found = find_child(draft.lights, light.name);
+    if (found == draft.lights.end()) return not_found(light, "light");
+    draft.lights.erase(found);
+    return absl::OkStatus();
+  });
+  if (!scene.ok()) return scene.status();
+  return (*scene)->revision;
+}
+
+}  // namespace diaphane::scene

@@ -1,0 +1,178 @@
+#include "service/convert/frame.h"
+
+#include <utility>
+
+#include "base/status.h"
+#include "fmt/format.h"
+#include "glm/geometric.hpp"
+#include "service/convert/check.h"
+
+namespace diaphane::service {
+namespace {
+
+constexpr uint32_t kLargestSide_px = 8192;
+constexpr double kSmallestDistance = 1e-12;
+constexpr double kSmallestSine = 3e-4;  // of the angle between view and up: 0.02 degrees
+
+std::string show(const v1::Vec3& v) { return fmt::format("{},{},{}", v.x(), v.y(), v.z()); }
+
+/// The refusal of a value that the enum has not.
+template <typename Enum>
+absl::Status unknown_value(std::string_view field, Enum value) {
+  const auto* descriptor = google::protobuf::GetEnumDescriptor<Enum>();
+  std::string known = descriptor->value(1)->name();
+  for (int i = 2; i < descriptor->value_count(); ++i) known += ", " + descriptor->value(i)->name();
+  return base::invalid_field(field, known, static_cast<int>(value));
+}
+
+absl::StatusOr<render::Technique> from_proto(v1::Technique technique) {
+  switch (technique) {
+    case v1::TECHNIQUE_UNSPECIFIED:
+    case v1::TECHNIQUE_PAPER:
+      return render::Technique::kPaper;
+    case v1::TECHNIQUE_LAMBERT:
+      return render::Technique::kLambert;
+    default:
+      return unknown_value("settings.technique", technique);
+  }
+}
+
+absl::StatusOr<render::Terms> from_proto(v1::Terms terms) {
+  switch (terms) {
+    case v1::TERMS_UNSPECIFIED:
+    case v1::TERMS_BOTH:
+      return render::Terms::kBoth;
+    case v1::TERMS_LOCAL:
+      return render::Terms::kLocal;
+    case v1::TERMS_GLOBAL:
+      return render::Terms::kGlobal;
+    default:
+      return unknown_value("settings.paper.terms", terms);
+  }
+}
+
+absl::StatusOr<render::PaperSettings> from_proto(const v1::PaperSettings& message) {
+  render::PaperSettings settings;
+  const absl::StatusOr<render::Terms> terms = from_proto(message.terms());
+  if (!terms.ok()) return terms.status();
+  settings.terms = *terms;
+  if (message.kernel_taps() != 0) {
+    absl::Status taps = check_range("settings.paper.kernel_taps", message.kernel_taps(), 3, 6);
+    if (!taps.ok()) return taps;
+    settings.kernel_taps = message.kernel_taps();
+  }
+  if (message.face_size_px() != 0) {
+    absl::Status face = check_range("settings.paper.face_size_px", message.face_size_px(), 16, 2048);
+    if (!face.ok()) return face;
+    settings.face_size_px = message.face_size_px();
+  }
+  if (message.has_global_gain()) {
+    absl::Status gain = check_range("settings.paper.global_gain", message.global_gain(), 0, 1000);
+    if (!gain.ok()) return gain;
+    settings.global_gain = message.global_gain();
+  }
+  return settings;
+}
+
+}  // namespace
+
+absl::StatusOr<scene::Camera> from_proto(const v1::Camera& message) {
+  const auto eye = position_from_proto(message.eye(), "camera.eye");
+  if (!eye.ok()) return eye.status();
+  const auto target = position_from_proto(message.target(), "camera.target");
+  if (!target.ok()) return target.status();
+  const auto up = position_from_proto(message.up(), "camera.up");
+  if (!up.ok()) return up.status();
+  const glm::dvec3 view = glm::dvec3(*target) - glm::dvec3(*eye);
+  const double distance = glm::length(view);
+  if (distance < kSmallestDistance) {
+    return base::invalid_field("camera.eye", "apart from camera.target", show(message.eye()));
+  }
+  const double up_length = glm::length(glm::dvec3(*up));
+  if (up_length < kSmallestDistance) return base::invalid_field("camera.up", "a direction", show(message.up()));
+  const glm::dvec3 up_direction = glm::dvec3(*up) / up_length;
+  if (glm::length(glm::cross(view / distance, up_direction)) < kSmallestSine) {
+    return base::invalid_field("camera.up", "not parallel to the view", show(message.up()));
+  }
+  absl::Status fov = check_range("camera.fov_y_deg", message.fov_y_deg(), 1, 170);
+  if (!fov.ok()) return fov;
+  return scene::Camera{*eye, *target, glm::vec3(up_direction), message.fov_y_deg()};
+}
+
+absl::StatusOr<render::RenderSettings> from_proto(const v1::RenderSettings& message) {
+  const absl::StatusOr<render::Technique> technique = from_proto(message.technique());
+  if (!technique.ok()) return technique.status();
+  const absl::StatusOr<render::PaperSettings> paper = from_proto(message.paper());
+  if (!paper.ok()) return paper.status();
+  absl::Status exposure = check_range("settings.exposure_ev", message.exposure_ev(), -32, 32);
+  if (!exposure.ok()) return exposure;
+  return render::RenderSettings{*technique, *paper, message.exposure_ev()};
+}
+
+absl::StatusOr<encode::Encoding> from_proto(const v1::Encoding& message) {
+  encode::Encoding encoding;
+  switch (message.format()) {
+    case v1::IMAGE_FORMAT_UNSPECIFIED:
+    case v1::IMAGE_FORMAT_PNG:
+      encoding.format = encode::ImageFormat::kPng;
+      break;
+    case v1::IMAGE_FORMAT_JPEG:
+      encoding.format = encode::ImageFormat::kJpeg;
+      break;
+    case v1::IMAGE_FORMAT_EXR:
+      encoding.format = encode::ImageFormat::kExr;
+      break;
+    default:
+      return unknown_value("encoding.format", message.format());
+  }
+  if (message.jpeg_quality() != 0) {
+    absl::Status quality = check_range("encoding.jpeg_quality", message.jpeg_quality(), 1, 100);
+    if (!quality.ok()) return quality;
+    encoding.jpeg_quality = static_cast<int>(message.jpeg_quality());
+  }
+  return encoding;
+}
+
+absl::Status check_size(const v1::Size& message, uint64_t max_pixels) {
+  absl::Status width = check_range("size.width_px", message.width_px(), 1, kLargestSide_px);
+  if (!width.ok()) return width;
+  absl::Status height = check_range("size.height_px", message.height_px(), 1, kLargestSide_px);
+  if (!height.ok()) return height;
+  if (uint64_t{message.width_px()} * message.height_px() <= max_pixels) return absl::OkStatus();
+  return base::invalid_field("size", fmt::format("at most {} pixels", max_pixels),
+                             fmt::format("{}x{}", message.width_px(), message.height_px()));
+}
+
+absl::StatusOr<session::FrameTask> from_proto(const v1::RenderFrameRequest& message, uint64_t max_pixels) {
+  const absl::StatusOr<scene::Camera> camera = from_proto(message.camera());
+  if (!camera.ok()) return camera.status();
+  if (absl::Status size = check_size(message.size(), max_pixels); !size.ok()) return size;
+  const absl::StatusOr<render::RenderSettings> settings = from_proto(message.settings());
+  if (!settings.ok()) return settings.status();
+  const absl::StatusOr<encode::Encoding> encoding = from_proto(message.encoding());
+  if (!encoding.ok()) return encoding.status();
+  session::FrameTask task;
+  task.request.camera = *camera;
+  task.request.width_px = message.size().width_px();
+  task.request.height_px = message.size().height_px();
+  task.request.settings = *settings;
+  task.encoding = *encoding;
+  return task;
+}
+
+void to_proto(session::EncodedFrame frame, v1::RenderFrameResponse& message) {
+  message.set_image(std::move(frame.bytes));
+  message.set_content_type(std::string(frame.content_type));
+  message.set_scene_revision(frame.scene_revision);
+  message.mutable_size()->set_width_px(frame.width_px);
+  message.mutable_size()->set_height_px(frame.height_px);
+  for (const render::StageTime& stage : frame.stages) {
+    v1::StageTime& time = *message.add_stages();
+    time.set_stage(stage.stage);
+    time.set_milliseconds(stage.milliseconds);
+    time.set_ran(stage.ran);
+  }
+  message.set_path(std::move(frame.path));
+}
+
+}  // namespace diaphane::service

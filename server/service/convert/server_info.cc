@@ -1,0 +1,28 @@
+#include "service/convert/server_info.h"
+
+namespace diaphane::service {
+
+void to_proto(const render::RendererInfo& renderer, v1::ServerInfo& message) {
+  message.set_gl_renderer(renderer.gl_renderer);
+  message.set_gl_vendor(renderer.gl_vendor);
+  message.set_gl_version(renderer.gl_version);
+  message.set_software_rendering(renderer.software);
+  message.set_context_reason(renderer.reason);
+  for (const char* format : {"png", "jpeg", "exr"}) message.add_image_formats(format);
+  for (const char* technique : {"paper", "lambert"}) message.add_techniques(technique);
+}
+
+void to_proto(const ServiceLimits& limits, v1::Limits& message) {
+  message.set_max_pixels(limits.max_pixels);
+  message.set_max_vertices_per_mesh(limits.scene.max_vertices_per_mesh);
+  message.set_max_triangles_per_mesh(limits.scene.max_triangles_per_mesh);
+  message.set_max_scenes(limits.scene.max_scenes);
+  message.set_max_meshes_per_scene(limits.scene.max_meshes_per_scene);
+  message.set_max_lights_per_scene(limits.scene.max_lights_per_scene);
+  message.set_max_materials_per_scene(limits.scene.max_materials_per_scene);
+  message.set_max_mesh_bytes(limits.scene.max_mesh_bytes);
+  message.set_max_chunk_bytes(kMaxChunkBytes);
+  message.set_max_queued_frames(limits.max_queued_frames);
+}
+
+}  // namespace diaphane::service

@@ -1,0 +1,70 @@
+#include "service/render_service.h"
+
+#include <memory>
+#include <utility>
+
+#include "absl/synchronization/mutex.h"
+#include "base/status.h"
+#include "service/convert/frame.h"
+#include "service/unary.h"
+
+namespace diaphane::service {
+namespace {
+
+/// One frame on its way. Finishes exactly once, when its job ends; a cancelled call ends its job. Deletes itself.
+class FrameReactor final : public grpc::ServerUnaryReactor {
+ public:
+  FrameReactor(session::RenderThread& render_thread, session::FrameTask task, v1::RenderFrameResponse* response)
+      : render_thread_(render_thread) {
+    task.done = [this, response](absl::StatusOr<session::EncodedFrame> frame) {
+      if (frame.ok()) to_proto(*std::move(frame), *response);
+      Finish(to_grpc(frame.status()));
+    };
+    // gRPC binds the reactor, and may then cancel it, only after this.
+    const auto job = render_thread_.submit(std::move(task));
+    if (!job.ok()) {
+      Finish(to_grpc(job.status()));
+    } else {
+      job_ = *job;
+    }
+  }
+
+  void OnCancel() override {
+    if (const auto job = job_.lock()) render_thread_.cancel(job);
+  }
+
+  void OnDone() override { delete this; }
+
+ private:
+  session::RenderThread& render_thread_;
+  // Not an owner: a frame that waits for a slow client must not keep its scene alive.
+  std::weak_ptr<session::FrameJob> job_;
+};
+
+absl::StatusOr<session::FrameTask> make_task(const scene::SceneStore& store, const ServiceLimits& limits,
+                                             const grpc::CallbackServerContext& context,
+                                             const v1::RenderFrameRequest& request) {
+  absl::StatusOr<session::FrameTask> task = from_proto(request, limits.max_pixels);
+  if (!task.ok()) return task;
+  absl::StatusOr<scene::SnapshotPtr> scene = store.scene({"scene", request.scene()});
+  if (!scene.ok()) return scene.status();
+  if ((*scene)->meshes.empty()) {
+    return base::field_error(absl::StatusCode::kFailedPrecondition,
+                             {"scene", request.scene(), "a scene with a mesh in it"});
+  }
+  task->request.scene = *std::move(scene);
+  task->deadline = absl::FromChrono(context.deadline());
+  return task;
+}
+
+}  // namespace
+
+grpc::ServerUnaryReactor* RenderService::RenderFrame(grpc::CallbackServerContext* context,
+                                                     const v1::RenderFrameRequest* request,
+                                                     v1::RenderFrameResponse* response) {
+  absl::StatusOr<session::FrameTask> task = make_task(store_, limits_, *context, *request);
+  if (!task.ok()) return answer(context, task.status());
+  return new FrameReactor(render_thread_, *std::move(task), response);
+}
+
+}  // namespace diaphane::service

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "diaphane/v1/render_service.grpc.pb.h"
+#include "scene/scene_store.h"
+#include "service/limits.h"
+#include "session/render_thread.h"
+
+namespace diaphane::service {
+
+/// Frames of scenes. Thread-safe. What it borrows outlives it, and the server that serves it.
+class RenderService final : public v1::RenderService::CallbackService {
+ public:
+  RenderService(const ServiceLimits& limits, const scene::SceneStore& store, session::RenderThread& render_thread)
+      : limits_(limits), store_(store), render_thread_(render_thread) {}
+
+ private:
+  grpc::ServerUnaryReactor* RenderFrame(grpc::CallbackServerContext* context, const v1::RenderFrameRequest* request,
+                                        v1::RenderFrameResponse* response) override;
+
+  const ServiceLimits limits_;
+  const scene::SceneStore& store_;
+  session::RenderThread& render_thread_;
+};
+
+}  // namespace diaphane::service

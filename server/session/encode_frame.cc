@@ -1,0 +1,46 @@
+#include "session/encode_frame.h"
+
+#include <utility>
+
+namespace diaphane::session {
+namespace {
+
+absl::StatusOr<std::string> encode_pixels(const render::Frame& frame, const encode::Encoding& encoding) {
+  if (const auto* image = std::get_if<base::Image8>(&frame.image)) {
+    if (encoding.format == encode::ImageFormat::kPng) return encode::encode_png(*image);
+    if (encoding.format == encode::ImageFormat::kJpeg) return encode::encode_jpeg(*image, encoding.jpeg_quality);
+  } else if (encoding.format == encode::ImageFormat::kExr) {
+    return encode::encode_exr(std::get<base::ImageF>(frame.image));
+  }
+  return absl::InternalError("the renderer answered with pixels of the wrong kind");
+}
+
+}  // namespace
+
+render::PixelFormat pixel_format_for(encode::ImageFormat format) {
+  return format == encode::ImageFormat::kExr ? render::PixelFormat::kLinearFloat : render::PixelFormat::kSrgb8;
+}
+
+absl::StatusOr<EncodedFrame> encode_frame(render::Frame frame, const encode::Encoding& encoding) {
+  const absl::Time start = absl::Now();
+  absl::StatusOr<std::string> bytes = encode_pixels(frame, encoding);
+  if (!bytes.ok()) return bytes.status();
+  EncodedFrame encoded;
+  encoded.bytes = *std::move(bytes);
+  encoded.content_type = encode::content_type(encoding.format);
+  std::visit(
+      [&](const auto& image) {
+        encoded.width_px = image.width_px;
+        encoded.height_px = image.height_px;
+      },
+      frame.image);
+  encoded.scene_revision = frame.scene_revision;
+  encoded.stages = std::move(frame.stages);
+  encoded.stages.push_back({"encode", milliseconds_since(start), true});
+  encoded.path = std::move(frame.path);
+  return encoded;
+}
+
+double milliseconds_since(absl::Time start) { return absl::ToDoubleMilliseconds(absl::Now() - start); }
+
+}  // namespace diaphane::session

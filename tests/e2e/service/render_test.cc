@@ -1,0 +1,151 @@
+// Frames, by gRPC.
+#include <gmock/gmock.h>
+
+#include <thread>
+
+#include "tests/e2e/service/test_server.h"
+
+namespace diaphane::e2e {
+namespace {
+
+using ::testing::StartsWith;
+
+class RenderTest : public ServiceTest {
+ protected:
+  void SetUp() override {
+    ServiceTest::SetUp();
+    scene_ = create_scene().name();
+    create_mesh(scene_);
+  }
+
+  std::string scene_;
+};
+
+TEST_F(RenderTest, AnswersWithAPngOfTheNewestRevision) {
+  v1::RenderFrameResponse response;
+  const grpc::Status status = render(frame_of(scene_), &response);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_THAT(response.image(), StartsWith("\x89PNG"));
+  EXPECT_EQ(response.content_type(), "image/png");
+  EXPECT_EQ(response.scene_revision(), 3u);
+  EXPECT_EQ(response.size().width_px(), 8u);
+  EXPECT_EQ(response.size().height_px(), 4u);
+  EXPECT_EQ(response.path(), "fake");
+  EXPECT_EQ(response.stages(0).stage(), "queue");
+  EXPECT_EQ(response.stages(response.stages_size() - 1).stage(), "encode");
+  create_material(scene_);
+  ASSERT_TRUE(render(frame_of(scene_), &response).ok());
+  EXPECT_EQ(response.scene_revision(), 4u);
+}
+
+TEST_F(RenderTest, EncodesAsAsked) {
+  v1::RenderFrameRequest request = frame_of(scene_);
+  v1::RenderFrameResponse response;
+  request.mutable_encoding()->set_format(v1::IMAGE_FORMAT_JPEG);
+  ASSERT_TRUE(render(request, &response).ok());
+  EXPECT_THAT(response.image(), StartsWith("\xff\xd8\xff"));
+  request.mutable_encoding()->set_format(v1::IMAGE_FORMAT_EXR);
+  ASSERT_TRUE(render(request, &response).ok());
+  EXPECT_THAT(response.image(), StartsWith("v/1\x01"));
+}
+
+TEST_F(RenderTest, SendsFramesLargerThanGrpcsDefault) {
+  v1::RenderFrameRequest request = frame_of(scene_);
+  request.mutable_size()->set_width_px(4096);
+  request.mutable_size()->set_height_px(1024);
+  request.mutable_encoding()->set_format(v1::IMAGE_FORMAT_EXR);
+  grpc::ChannelArguments arguments;
+  arguments.SetMaxReceiveMessageSize(-1);
+  const auto stub = v1::RenderService::NewStub(
+      grpc::CreateCustomChannel(server_->address(), grpc::InsecureChannelCredentials(), arguments));
+  Context context;
+  v1::RenderFrameResponse response;
+  const grpc::Status status = stub->RenderFrame(&context, request, &response);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(response.size().width_px(), 4096u);
+}
+
+TEST_F(RenderTest, StopsAFrameWhoseCallerGoes) {
+  control_->hold();
+  Context context;
+  std::thread caller([&] {
+    v1::RenderFrameResponse response;
+    EXPECT_EQ(frames_->RenderFrame(&context, frame_of(scene_), &response).error_code(), grpc::StatusCode::CANCELLED);
+  });
+  control_->wait_for_started(1);
+  context.TryCancel();
+  caller.join();
+  // The renderer, still held, has seen it: a second frame starts.
+  Context next;
+  std::thread second([&] {
+    v1::RenderFrameResponse response;
+    EXPECT_TRUE(frames_->RenderFrame(&next, frame_of(scene_), &response).ok());
+  });
+  control_->wait_for_started(2);
+  control_->release();
+  second.join();
+}
+
+TEST_F(RenderTest, EndsAtTheCallersDeadline) {
+  control_->hold();
+  Context context;
+  context.set_deadline(std::chrono::system_clock::now() + std::chrono::milliseconds(50));
+  v1::RenderFrameResponse response;
+  EXPECT_EQ(frames_->RenderFrame(&context, frame_of(scene_), &response).error_code(),
+            grpc::StatusCode::DEADLINE_EXCEEDED);
+  control_->release();
+  EXPECT_TRUE(render(frame_of(scene_), &response).ok());
+}
+
+TEST_F(RenderTest, RefusesFramesPastTheQueue) {
+  service::ServiceLimits limits;
+  limits.max_queued_frames = 1;
+  start(limits);
+  scene_ = create_scene().name();
+  create_mesh(scene_);
+  control_->hold();
+  Context contexts[2];
+  v1::RenderFrameResponse responses[2];
+  std::thread drawn([&] { EXPECT_TRUE(frames_->RenderFrame(&contexts[0], frame_of(scene_), &responses[0]).ok()); });
+  control_->wait_for_started(1);
+  // One of the next two waits, the other is refused.
+  grpc::Status statuses[2];
+  std::thread waiting([&] { statuses[0] = frames_->RenderFrame(&contexts[1], frame_of(scene_), &responses[1]); });
+  v1::RenderFrameResponse response;
+  do {
+    Context context;
+    context.set_deadline(std::chrono::system_clock::now() + std::chrono::milliseconds(100));
+    statuses[1] = frames_->RenderFrame(&context, frame_of(scene_), &response);
+  } while (statuses[1].error_code() == grpc::StatusCode::DEADLINE_EXCEEDED);
+  EXPECT_EQ(statuses[1].error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(error_info(statuses[1]).metadata().at("field"), "queued_frames");
+  control_->release();
+  drawn.join();
+  waiting.join();
+  EXPECT_TRUE(statuses[0].ok() || statuses[0].error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED);
+}
+
+TEST_F(RenderTest, SurvivesARendererWithoutMemory) {
+  control_->run_out_of_memory();
+  v1::RenderFrameResponse response;
+  EXPECT_EQ(render(frame_of(scene_), &response).error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_TRUE(render(frame_of(scene_), &response).ok());
+}
+
+TEST_F(RenderTest, DrawsWhileTheSceneIsDeleted) {
+  control_->hold();
+  v1::RenderFrameResponse response;
+  std::thread caller([&] { EXPECT_TRUE(render(frame_of(scene_), &response).ok()); });
+  control_->wait_for_started(1);
+  Context context;
+  v1::DeleteSceneRequest request;
+  request.set_name(scene_);
+  google::protobuf::Empty empty;
+  ASSERT_TRUE(scenes_->DeleteScene(&context, request, &empty).ok());
+  control_->release();
+  caller.join();
+  EXPECT_EQ(response.scene_revision(), 3u);
+}
+
+}  // namespace
+}  // namespace diaphane::e2e

@@ -1,0 +1,111 @@
+#include "encode/encode.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace diaphane::encode {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+struct Decoded {
+  OIIO::ImageSpec spec;
+  std::vector<float> values;  // as stored: 0..1 for 8-bit formats
+};
+
+Decoded decode(const std::string& bytes, const char* name) {
+  OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+  void* proxy = &memory;
+  OIIO::ImageSpec config;
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  const auto input = OIIO::ImageInput::open(name, &config);
+  if (input == nullptr) {
+    ADD_FAILURE() << OIIO::geterror();
+    return {};
+  }
+  Decoded decoded{input->spec(), {}};
+  decoded.values.resize(decoded.spec.image_pixels() * decoded.spec.nchannels);
+  EXPECT_TRUE(input->read_image(0, 0, 0, decoded.spec.nchannels, OIIO::TypeFloat, decoded.values.data()))
+      << input->geterror();
+  return decoded;
+}
+
+base::Image8 half_transparent(uint32_t width_px, uint32_t height_px) {
+  base::Image8 image{width_px, height_px, {}};
+  for (uint32_t i = 0; i < width_px * height_px; ++i) {
+    for (const uint32_t value : {200u, i % 256, 40u, 128u}) image.rgba.push_back(static_cast<uint8_t>(value));
+  }
+  return image;
+}
+
+TEST(EncodePng, KeepsEveryByteUnderPartialAlpha) {
+  const base::Image8 image = half_transparent(5, 3);
+  const Decoded decoded = decode(*encode_png(image), "a.png");
+  ASSERT_EQ(decoded.spec.width, 5);
+  ASSERT_EQ(decoded.spec.height, 3);
+  ASSERT_EQ(decoded.spec.nchannels, 4);
+  for (size_t i = 0; i < image.rgba.size(); ++i) {
+    ASSERT_EQ(std::lround(decoded.values[i] * 255), image.rgba[i]) << "byte " << i;
+  }
+}
+
+TEST(EncodeJpeg, LaysColoursOverBlack) {
+  base::Image8 image{16, 16, {}};
+  for (int i = 0; i < 256; ++i) image.rgba.insert(image.rgba.end(), {200, 200, 200, 128});
+  const Decoded decoded = decode(*encode_jpeg(image, 95), "a.jpg");
+  ASSERT_EQ(decoded.spec.nchannels, 3);
+  EXPECT_NEAR(decoded.values[0] * 255, 200 * 128 / 255.0, 1.5);
+}
+
+TEST(EncodeJpeg, IsSmallerAtALowerQuality) {
+  const base::Image8 image = half_transparent(64, 64);
+  EXPECT_LT(encode_jpeg(image, 20)->size(), encode_jpeg(image, 95)->size());
+}
+
+TEST(EncodeExr, KeepsEveryFloat) {
+  const float largest = std::numeric_limits<float>::max();
+  const base::ImageF image{2, 1, {"R", "G", "B", "A"}, {1e-30f, -2.5f, largest, 1, 0.1f, 7e8f, 0, 0.25f}};
+  const Decoded decoded = decode(*encode_exr(image), "a.exr");
+  EXPECT_EQ(decoded.spec.format, OIIO::TypeFloat);
+  EXPECT_EQ(decoded.values, image.values);
+  EXPECT_THAT(decoded.spec.channelnames, ElementsAre("R", "G", "B", "A"));
+}
+
+TEST(EncodeExr, KeepsTheNamesOfOtherChannels) {
+  const base::ImageF image{1, 1, {"R", "G", "B", "A", "Z"}, {1, 2, 3, 1, 9}};
+  EXPECT_THAT(decode(*encode_exr(image), "a.exr").spec.channelnames, ElementsAre("R", "G", "B", "A", "Z"));
+}
+
+TEST(Encode, WritesNothingButTheImage) {
+  const base::ImageF linear{1, 1, {"R", "G", "B", "A"}, {1, 2, 3, 1}};
+  for (const std::string& bytes :
+       {*encode_png(half_transparent(8, 8)), *encode_jpeg(half_transparent(8, 8), 90), *encode_exr(linear)}) {
+    for (const char* word : {"DateTime", "Software", "OpenImageIO", "tIME", "HostComputer"}) {
+      EXPECT_THAT(bytes, Not(HasSubstr(word)));
+    }
+  }
+}
+
+TEST(EncodeExr, LeavesTheTimeOfDayOut) {
+  const Decoded decoded = decode(*encode_exr({1, 1, {"R", "G", "B", "A"}, {1, 2, 3, 1}}), "a.exr");
+  EXPECT_EQ(decoded.spec.get_string_attribute("DateTime"), "");
+}
+
+TEST(Encode, GivesTheSameBytesAgain) {
+  const base::Image8 image = half_transparent(33, 17);
+  EXPECT_EQ(*encode_png(image), *encode_png(image));
+  EXPECT_EQ(*encode_jpeg(image, 90), *encode_jpeg(image, 90));
+}
+
+TEST(Encode, ReportsAnImageOfNoSize) { EXPECT_EQ(encode_png({}).status().code(), absl::StatusCode::kInternal); }
+
+}  // namespace
+}  // namespace diaphane::encode

@@ -63,14 +63,15 @@ TEST_F(PrivateServerTest, KeepsItsSocketInADirectoryOfItsOwnAndRemovesIt) {
 
 TEST_F(PrivateServerTest, EndsWhenItsInputCloses) {
   {
-    auto server = PrivateServer::start(script(std::string(kListen) + "trap '' TERM; cat; echo yes > $folder/ended"));
+    auto server =
+        PrivateServer::start(script("trap '' TERM; " + std::string(kListen) + "cat; echo yes > $folder/ended"));
     ASSERT_TRUE(server.ok()) << server.status();
   }
   EXPECT_EQ(text_of("ended"), "yes\n");
 }
 
 TEST_F(PrivateServerTest, IsKilledWhenItWillNotEnd) {
-  PrivateServerOptions options = script(std::string(kListen) + "trap '' TERM; while true; do sleep 0.01; done");
+  PrivateServerOptions options = script("trap '' TERM; " + std::string(kListen) + "while true; do sleep 0.01; done");
   options.stop_timeout = milliseconds(100);
   {
     auto server = PrivateServer::start(options);

@@ -20,6 +20,7 @@ struct Commands {
   CLI::App* render = nullptr;
   CLI::App* materials = nullptr;
   CLI::App* info = nullptr;
+  CLI::App* scene = nullptr;
   CLI::App* scene_ls = nullptr;
   CLI::App* scene_show = nullptr;
   CLI::App* scene_rm = nullptr;
@@ -30,14 +31,14 @@ struct Commands {
     app.add_option("--server", global.server, "HOST:PORT or unix:PATH (default: a private server)")->type_name("ADDR");
     app.add_flag("--json", global.json, "Machine-readable output");
     app.add_flag("-v,--verbose", global.verbose, "Say more on stderr");
-    app.require_subcommand(1);
+    app.require_subcommand(0, 1);  // run() says better what is missing
 
     render = app.add_subcommand("render", "Render meshes, or a scene file, to an image");
     add_render_options(*render, render_arguments);
     materials = app.add_subcommand("materials", "List the material presets");
     info = app.add_subcommand("info", "Say what the server is, and what it allows");
-    CLI::App* scene = app.add_subcommand("scene", "Look after the scenes of a running server");
-    scene->require_subcommand(1);
+    scene = app.add_subcommand("scene", "Look after the scenes of a running server");
+    scene->require_subcommand(0, 1);
     scene_ls = scene->add_subcommand("ls", "List them");
     scene_show = scene->add_subcommand("show", "Show one and all that is in it");
     scene_rm = scene->add_subcommand("rm", "Delete one");
@@ -51,7 +52,9 @@ struct Commands {
     if (info->parsed()) return run_info(global);
     if (scene_ls->parsed()) return run_scene_ls(global);
     if (scene_show->parsed()) return run_scene_show(global, scene_id);
-    return run_scene_rm(global, scene_id);
+    if (scene_rm->parsed()) return run_scene_rm(global, scene_id);
+    if (scene->parsed()) return usage_error("scene", "give one of ls, show ID, rm ID");
+    return usage_error("COMMAND", "give one of render, materials, info, scene; see diaphane --help");
   }
 };
 

@@ -1,34 +1,29 @@
 #include "render_arguments.h"
 
-#include <cmath>
-#include <functional>
-
 #include "fmt/format.h"
 #include "parse.h"
 
 namespace diaphane::cli {
 namespace {
 
+template <typename Value>
+using Parse = std::optional<Value> (*)(std::string_view);
+
+template <typename Value>
+Value parsed(const std::string& flag, const std::string& form, Parse<Value> parse, const std::string& text) {
+  const std::optional<Value> value = parse(text);
+  if (!value) throw CLI::ValidationError(flag, fmt::format("must be {}, got '{}'", form, text));
+  return *value;
+}
+
 // An option whose text `parse` turns into a value; `form` says what it must look like.
 template <typename Value>
 CLI::Option* add_parsed(CLI::App& command, const std::string& flag, const std::string& form, const std::string& help,
-                        std::optional<Value> (*parse)(std::string_view), std::function<void(Value)> take) {
+                        Parse<Value> parse, std::optional<Value>& value) {
   return command
       .add_option_function<std::string>(
-          flag,
-          [=](const std::string& text) {
-            const std::optional<Value> value = parse(text);
-            if (!value) throw CLI::ValidationError(flag, fmt::format("must be {}, got '{}'", form, text));
-            take(*value);
-          },
-          help)
+          flag, [=, &value](const std::string& text) { value = parsed(flag, form, parse, text); }, help)
       ->type_name(form);
-}
-
-template <typename Value>
-CLI::Option* add_parsed(CLI::App& command, const std::string& flag, const std::string& form, const std::string& help,
-                        std::optional<Value> (*parse)(std::string_view), std::optional<Value>& value) {
-  return add_parsed<Value>(command, flag, form, help, parse, [&value](Value parsed) { value = parsed; });
 }
 
 std::optional<float> parse_number(std::string_view text) {
@@ -107,7 +102,7 @@ void add_technique_options(CLI::App& command, RenderArguments& arguments) {
 }  // namespace
 
 void add_render_options(CLI::App& command, RenderArguments& arguments) {
-  auto* meshes = command.add_option("MESH", arguments.meshes, "Mesh files: .gltf, .glb, .obj, .ply");
+  auto* meshes = command.add_option("MESH", arguments.meshes, "Mesh files: .gltf, .glb, .obj, .ply, .stl, .off");
   auto* scene =
       command.add_option("--scene", arguments.scene_file, "A scene file in place of meshes, materials, lights");
   scene->type_name("FILE.json")->excludes(meshes);
@@ -134,10 +129,16 @@ void add_render_options(CLI::App& command, RenderArguments& arguments) {
                             parse_above_zero, arguments.height_mm);
   height->excludes(unit);
   add_camera_options(command, arguments);
-  add_parsed<PointLight>(command, "--point-light", "X,Y,Z,R,G,B",
-                         "A point light: mesh units, then W/sr; may be repeated (default: one key light)",
-                         parse_point_light, [&arguments](PointLight light) { arguments.point_lights.push_back(light); })
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--point-light",
+          [&arguments](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) {
+              arguments.point_lights.push_back(parsed("--point-light", "X,Y,Z,R,G,B", parse_point_light, text));
+            }
+          },
+          "A point light: mesh units, then W/sr; may be repeated (default: one key light)")
+      ->type_name("X,Y,Z,R,G,B")
       ->allow_extra_args(false);
   for (const char* flag :
        {"--material", "--absorption", "--scattering", "--ior", "--mm-per-unit", "--height-mm", "--point-light"}) {

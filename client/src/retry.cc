@@ -36,6 +36,7 @@ absl::Status run_with_retries(const RetryPolicy& policy,
   const Clock::time_point deadline = Clock::now() + policy.call_timeout;
   const Clock::time_point last_retry = std::min(deadline, Clock::now() + policy.unavailable_timeout);
   milliseconds wait = kFirstPause;
+  grpc::Status unavailable;
   while (true) {
     if (policy.stop.stop_requested()) return absl::CancelledError("stopped");
     grpc::ClientContext context;
@@ -45,7 +46,10 @@ absl::Status run_with_retries(const RetryPolicy& policy,
       const std::stop_callback cancel(policy.stop, [&context] { context.TryCancel(); });
       status = attempt(context);
     }
+    // An attempt that still waits for a connection when the time is over does not know why there is none.
+    if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED && !unavailable.ok()) return to_absl(unavailable);
     if (status.error_code() != grpc::StatusCode::UNAVAILABLE || Clock::now() >= last_retry) return to_absl(status);
+    unavailable = status;
     if (!pause(jittered(wait), policy.stop)) return absl::CancelledError("stopped");
     wait = std::min(2 * wait, kLongestPause);
   }

@@ -1,0 +1,181 @@
+// Morphs a mesh to its bounding sphere in wax that is lit from behind, as the paper's Fig. 10 does: thin parts glow.
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "CLI/CLI.hpp"
+#include "contact_sheet.h"
+#include "diaphane/client.h"
+#include "diaphane/framing.h"
+#include "diaphane/private_server.h"
+#include "diaphane/readers.h"
+#include "fmt/format.h"
+
+namespace {
+
+using namespace diaphane;
+namespace fs = std::filesystem;
+
+constexpr double kHeightMm = 40;
+constexpr float kRadiance = 0.6f;  // W·mm⁻²·sr⁻¹ of a white wall as far from the light as the middle of the body
+
+struct Options {
+  fs::path mesh;
+  fs::path folder;
+  std::string server;
+  uint32_t frames = 24;
+  std::string size = "512x512";
+};
+
+struct Sphere {
+  Vec3 centre;
+  float radius = 0;
+};
+
+Sphere bounding_sphere(const Bounds& bounds, const std::vector<Vec3>& positions) {
+  Sphere sphere{{(bounds.lowest.x + bounds.highest.x) / 2, (bounds.lowest.y + bounds.highest.y) / 2,
+                 (bounds.lowest.z + bounds.highest.z) / 2}};
+  for (const Vec3& p : positions) {
+    sphere.radius =
+        std::max(sphere.radius, std::hypot(p.x - sphere.centre.x, p.y - sphere.centre.y, p.z - sphere.centre.z));
+  }
+  return sphere;
+}
+
+// p' = mix(p, c + R (p − c)/|p − c|, t)
+std::vector<Vec3> morphed(const std::vector<Vec3>& positions, const Sphere& sphere, float t) {
+  std::vector<Vec3> result;
+  result.reserve(positions.size());
+  const Vec3& c = sphere.centre;
+  for (const Vec3& p : positions) {
+    const float distance = std::hypot(p.x - c.x, p.y - c.y, p.z - c.z);
+    const float scale = distance > 0 ? 1 + t * (sphere.radius / distance - 1) : 1;
+    result.push_back({c.x + scale * (p.x - c.x), c.y + scale * (p.y - c.y), c.z + scale * (p.z - c.z)});
+  }
+  return result;
+}
+
+// The meshes of a file as one, in scene units: the morph is about a common centre.
+MeshData merged(const std::vector<MeshData>& meshes) {
+  MeshData all;
+  for (const MeshData& mesh : meshes) {
+    const auto first = static_cast<uint32_t>(all.positions.size());
+    const auto& m = mesh.scene_from_mesh;
+    for (const Vec3& p : mesh.positions) {
+      all.positions.push_back({m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12],
+                               m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13],
+                               m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]});
+    }
+    for (const uint32_t index : mesh.triangles) all.triangles.push_back(first + index);
+  }
+  return all;
+}
+
+void show_progress(uint32_t done, uint32_t total) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  const uint32_t filled = 40 * done / total;
+  std::cerr << fmt::format("\r[{:#<{}}{:.<{}}] {}/{}", "", filled, "", 40 - filled, done, total)
+            << (done == total ? "\n" : "") << std::flush;
+}
+
+absl::Status run(const Options& options) {
+  absl::StatusOr<LoadedFile> file = read_mesh_file(options.mesh);
+  if (!file.ok()) return file.status();
+  const MeshData mesh = merged(file->meshes);
+  const absl::StatusOr<Bounds> bounds = bounds_of({&mesh, 1});
+  if (!bounds.ok()) return bounds.status();
+  const float height = bounds->highest.y - bounds->lowest.y;
+  if (!(height > 0)) return absl::InvalidArgumentError("the mesh has no height");
+  const double millimetres_per_unit = kHeightMm / height;
+  const Sphere sphere = bounding_sphere(*bounds, mesh.positions);
+  const auto& [c, r] = sphere;
+
+  RenderOptions render;
+  char x = 0;
+  std::istringstream size(options.size);
+  size >> render.size.width_px >> x >> render.size.height_px;
+  // The sphere must fit too: it is what the mesh becomes.
+  render.camera = frame_camera({{c.x - r, c.y - r, c.z - r}, {c.x + r, c.y + r, c.z + r}},
+                               {.aspect = static_cast<float>(render.size.width_px) / render.size.height_px, .fill = 1});
+  // Behind and a little above, near the body but outside the sphere.
+  const PointLight light = [&] {
+    const float y = 0.9f * r;
+    const float z = -1.05f * r;
+    const double distance_mm = std::hypot(y, z) * millimetres_per_unit;
+    const auto intensity = static_cast<float>(kRadiance * M_PI * distance_mm * distance_mm);
+    return PointLight{{c.x, c.y + y, c.z + z}, {intensity, intensity, intensity}};
+  }();
+
+  std::optional<PrivateServer> server;
+  std::string address = options.server;
+  if (address.empty()) {
+    absl::StatusOr<PrivateServer> started = PrivateServer::start();
+    if (!started.ok()) return started.status();
+    server = *std::move(started);
+    address = server->address();
+  }
+  const absl::StatusOr<Client> client = Client::connect(address);
+  if (!client.ok()) return client.status();
+  const absl::StatusOr<Scene> scene =
+      client->create_scene({.display_name = "demo", .millimetres_per_unit = millimetres_per_unit});
+  if (!scene.ok()) return scene.status();
+  const auto delete_scene = std::shared_ptr<void>(nullptr, [&](void*) { (void)scene->remove(); });
+  const absl::StatusOr<MaterialHandle> wax = scene->add_material({"wax"});
+  if (!wax.ok()) return wax.status();
+  if (const auto handle = scene->add_light(light); !handle.ok()) return handle.status();
+  const absl::StatusOr<MeshHandle> body = scene->add_mesh(mesh, {.material = *wax});
+  if (!body.ok()) return body.status();
+  // The first frame compiles shaders; it is not timed.
+  if (const auto frame = scene->render(render); !frame.ok()) return frame.status();
+
+  std::vector<fs::path> pictures;
+  const auto start = std::chrono::steady_clock::now();
+  for (uint32_t i = 0; i < options.frames; ++i) {
+    const float t = options.frames > 1 ? static_cast<float>(i) / static_cast<float>(options.frames - 1) : 0;
+    const auto revision = scene->update_positions(*body, morphed(mesh.positions, sphere, t));
+    if (!revision.ok()) return revision.status();
+    const absl::StatusOr<RenderedFrame> frame = scene->render(render);
+    if (!frame.ok()) return frame.status();
+    pictures.push_back(options.folder / fmt::format("frame_{:03}.png", i));
+    std::ofstream picture(pictures.back(), std::ios::binary);
+    picture.write(frame->image.data(), static_cast<std::streamsize>(frame->image.size()));
+    if (!picture.flush()) return absl::DataLossError(fmt::format("{}: cannot be written", pictures.back().string()));
+    show_progress(i + 1, options.frames);
+  }
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+
+  const fs::path sheet = options.folder / "contact_sheet.png";
+  if (const std::string error = examples::write_contact_sheet(pictures, 256, sheet); !error.empty()) {
+    return absl::DataLossError(fmt::format("{}: {}", sheet.string(), error));
+  }
+  std::cout << fmt::format("{} frames and contact_sheet.png in {}: {:.1f} frames per second\n", options.frames,
+                           options.folder.string(), options.frames / seconds.count());
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"Morphs a mesh to its bounding sphere in wax that is lit from behind."};
+  app.add_option("MESH", options.mesh)->required();
+  app.add_option("OUTDIR", options.folder)->required();
+  app.add_option("--server", options.server, "HOST:PORT or unix:PATH (default: a private server)");
+  app.add_option("--frames", options.frames)->check(CLI::Range(1u, 999u));
+  app.add_option("--size", options.size, "WxH");
+  CLI11_PARSE(app, argc, argv);
+  std::error_code code;
+  fs::create_directories(options.folder, code);
+  const absl::Status status =
+      code ? absl::InternalError(fmt::format("{}: {}", options.folder.string(), code.message())) : run(options);
+  if (!status.ok()) std::cerr << "diaphane-demo: " << std::string(status.message()) << "\n";
+  return status.ok() ? 0 : 1;
+}

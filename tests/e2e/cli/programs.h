@@ -1,0 +1,25 @@
+// Runs the project's programs as a person would.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace diaphane::testing_support {
+
+struct Finished {
+  int exit_code = -1;  ///< 128 + the signal, where one ended it
+  std::string out;
+  std::string err;
+};
+
+/// Runs build/bin/diaphane in `folder` to its end.
+Finished run_diaphane(const std::filesystem::path& folder, const std::vector<std::string>& arguments);
+
+std::string read_file(const std::filesystem::path& path);
+void write_file(const std::filesystem::path& path, const std::string& text);
+
+/// A cube as an OBJ file: 8 vertices, 6 quads, from -1 to 1.
+std::string cube_obj();
+
+}  // namespace diaphane::testing_support

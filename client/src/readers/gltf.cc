@@ -39,9 +39,9 @@ class GltfReader {
         if (!status.ok()) return status;
       }
     }
-    if (file_.meshes.empty()) return nothing_to_render(source_, vertices_);
     for (const auto& [what, count] : skipped_) file_.warnings.push_back(fmt::format("left out: {} {}", count, what));
-    return std::move(file_);
+    if (!file_.meshes.empty()) return std::move(file_);
+    return nothing_to_render(source_, vertices_, fmt::format("{}", fmt::join(file_.warnings, ", ")));
   }
 
  private:
@@ -143,10 +143,7 @@ class GltfReader {
     for (size_t i = 0; i < data.positions.size(); ++i) {
       const Vec3& p = data.positions[i];
       if (!is_finite(p)) {
-        return source_.malformed(fmt::format("position {} is {}, "
-                                             ", {}",
-                                             i, p.x, p.y, p.z),
-                                 where, "must be finite");
+        return source_.malformed(fmt::format("position {} is {}, {}, {}", i, p.x, p.y, p.z), where, "must be finite");
       }
     }
     for (Vec3& normal : data.normals) {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "fmt/format.h"
+#include "readers/gltf_types.h"
 
 namespace diaphane::readers {
 namespace {
@@ -69,7 +70,7 @@ class JsonFilter {
            std::find(std::begin(kArrays), std::end(kArrays), key) != std::end(kArrays);
   }
 
-  // tinygltf would cut an integer to 32 bits; as a floating-point number it is told that it is none.
+  // tinygltf would cut an integer to 32 bits; check_gltf_types() refuses it where it is no plain number.
   static void keep_whole(json& value) {
     const bool too_large = value.is_number_unsigned()  ? value.get<uint64_t>() > std::numeric_limits<int32_t>::max()
                            : value.is_number_integer() ? value.get<int64_t>() < std::numeric_limits<int32_t>::min()
@@ -92,6 +93,7 @@ uint32_t read_u32(std::string_view bytes, size_t offset) {
 // Finds the chunks of document.bytes; `text` becomes the JSON one.
 absl::Status split_glb(GltfDocument& document, std::string_view& text, const Source& source) {
   const std::string_view bytes = document.bytes;
+  text = {};
   if (bytes.size() < kGlbHeaderBytes)
     return source.malformed("ends within the GLB header", Place{"byte", bytes.size()});
   const uint32_t version = read_u32(bytes, 4);
@@ -163,6 +165,8 @@ absl::Status check_extensions(const json& root, const Source& source) {
 
 absl::Status parse_json(std::string_view text, GltfDocument& document, const Source& source) {
   if (text.size() > kMostJsonBytes) return source.over_limit("bytes of JSON", text.size(), kMostJsonBytes);
+  const size_t first = std::min(text.find_first_not_of(" \t\r\n\xef\xbb\xbf"), text.size());
+  if (text.substr(first, 1) != "{") return source.malformed("is neither a JSON object nor GLB", Place{"byte", first});
   JsonFilter filter(kMostObjectsPerNode * uint64_t{source.limits.max_nodes} + 1000);
   try {
     document.json = json::parse(text.begin(), text.end(), std::ref(filter));
@@ -174,7 +178,6 @@ absl::Status parse_json(std::string_view text, GltfDocument& document, const Sou
   } catch (const json::exception&) {  // a number beyond the range of double
     return source.malformed("holds a JSON number that is out of range");
   }
-  if (!document.json.is_object()) return source.malformed("is not a JSON object");
   for (std::string_view name : kArrays) {
     const auto entry = document.json.find(std::string(name));
     if (entry != document.json.end() && !entry->is_array()) {
@@ -196,6 +199,7 @@ absl::StatusOr<GltfDocument> parse_gltf_document(std::string bytes, const Source
   if (status.ok()) status = parse_json(text, document, source);
   if (status.ok()) status = check_version(document.json, source);
   if (status.ok()) status = check_extensions(document.json, source);
+  if (status.ok()) status = check_gltf_types(document.json, source);
   if (!status.ok()) return status;
   if (!glb) document.bytes = {};
   const auto nodes = document.json.find("nodes");

@@ -12,8 +12,8 @@ namespace diaphane::readers {
 
 struct GltfDocument {
   /// The root object: asset, scenes, nodes, meshes, accessors, bufferViews, buffers and the lists of extensions, all
-  /// arrays where they are there. Without extras and extension objects, nesting and values bounded, integers beyond 32
-  /// bits as floating-point numbers.
+  /// arrays where they are there, of the types that glTF 2.0 asks for. Without extras and extension objects; nesting
+  /// and values bounded; integers beyond 32 bits as floating-point numbers.
   nlohmann::json json;
 
   std::string bytes;  ///< of a GLB file, which binary_chunk() lies in

@@ -31,10 +31,8 @@ absl::Status MeshBuilder::expect(uint64_t vertices, uint64_t triangles) {
 
 absl::Status MeshBuilder::add_vertex(const Double3& position, Place place) {
   if (!fits_float(position[0]) || !fits_float(position[1]) || !fits_float(position[2])) {
-    return source_.malformed(fmt::format("position {}, "
-                                         ", {}",
-                                         position[0], position[1], position[2]),
-                             place, "must be finite");
+    return source_.malformed(fmt::format("position {}, {}, {}", position[0], position[1], position[2]), place,
+                             "must be finite");
   }
   if (++vertices_ > source_.limits.max_vertices) {
     return source_.over_limit("vertices", vertices_, source_.limits.max_vertices);
@@ -122,8 +120,8 @@ absl::StatusOr<LoadedFile> MeshBuilder::finish() {
   return std::move(file_);
 }
 
-absl::Status nothing_to_render(const Source& source, uint64_t vertices) {
-  return source.malformed(fmt::format("nothing to render: {} vertices and no triangle", vertices));
+absl::Status nothing_to_render(const Source& source, uint64_t vertices, std::string_view why) {
+  return source.malformed(fmt::format("nothing to render: it has no triangle (vertices: {})", vertices), why);
 }
 
 std::string tidy_name(std::string_view name) {

@@ -64,8 +64,8 @@ class MeshBuilder {
   uint64_t bad_normals_ = 0;
 };
 
-/// "nothing to render", in the name of `source`: what a file without a triangle is refused with.
-absl::Status nothing_to_render(const Source& source, uint64_t vertices);
+/// "nothing to render", in the name of `source`: what a file without a triangle is refused with; `why` may be empty.
+absl::Status nothing_to_render(const Source& source, uint64_t vertices, std::string_view why = {});
 
 /// A name from a file, as far as it is fit for a message: at most 120 bytes, without control characters.
 std::string tidy_name(std::string_view name);

@@ -151,8 +151,9 @@ class ObjReader {
   absl::Status resolve(std::string_view what, int64_t so_far, int64_t count, int64_t& index) const {
     const int64_t resolved = index > 0 ? index - 1 : index < 0 && index >= -so_far ? so_far + index : -1;
     if (resolved < 0 || resolved >= count) {
-      return source_.malformed(fmt::format("{} {}", what, index), place_,
-                               count == 0 ? "there are none" : fmt::format("must be 1..{} or -1..{}", count, -so_far));
+      std::string range = count == 0 ? "there are none" : fmt::format("must be 1..{}", count);
+      if (so_far > 0) range += fmt::format(" or -{}..-1", so_far);
+      return source_.malformed(fmt::format("{} {}", what, index), place_, range);
     }
     index = resolved;
     return absl::OkStatus();

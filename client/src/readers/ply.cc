@@ -23,20 +23,30 @@ class AsciiValues {
       : rest_(bytes.substr(header.body_offset)), line_(header.body_line) {}
 
   bool read(PlyType, double& value) {
-    size_t begin = 0;
-    while (begin < rest_.size() && is_blank(rest_[begin])) line_ += ends_line(begin++);
-    size_t end = begin;
+    skip_blanks();
+    size_t end = 0;
     while (end < rest_.size() && !is_blank(rest_[end])) ++end;
-    const std::string_view token = rest_.substr(begin, end - begin);
+    const std::string_view token = rest_.substr(0, end);
     rest_.remove_prefix(end);
     return parse_number(token, value);
   }
 
   /// The most values of a type that may still follow.
   uint64_t most_left(PlyType) const { return rest_.size() / 2 + 1; }
-  Place place() const { return {"line", line_}; }
+  /// Of the value read last.
+  Place last_place() const { return {"line", line_}; }
+  /// Of the value to be read next.
+  Place next_place() {
+    skip_blanks();
+    return last_place();
+  }
 
  private:
+  void skip_blanks() {
+    size_t count = 0;
+    while (count < rest_.size() && is_blank(rest_[count])) line_ += ends_line(count++);
+    rest_.remove_prefix(count);
+  }
   static bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
   bool ends_line(size_t i) const { return rest_[i] == '\n' || (rest_[i] == '\r' && rest_.substr(i, 2) != "\r\n"); }
 
@@ -63,7 +73,8 @@ class BinaryValues {
   }
 
   uint64_t most_left(PlyType type) const { return (bytes_.size() - offset_) / size_of(type); }
-  Place place() const { return {"byte", offset_}; }
+  Place last_place() const { return {"byte", offset_}; }
+  Place next_place() const { return last_place(); }
 
  private:
   static double to_number(PlyType type, uint64_t bits) {
@@ -128,7 +139,7 @@ class PlyReader {
   absl::Status read_list(const PlyElement& element, const PlyProperty& property, double count, bool wanted) {
     const auto most = static_cast<double>(values_.most_left(property.type));
     if (!(count >= 0) || count > most || count != static_cast<double>(static_cast<uint64_t>(count))) {
-      return source_.malformed(fmt::format("a list of {} {}", count, in_quotes(property.name)), values_.place(),
+      return source_.malformed(fmt::format("a list of {} {}", count, in_quotes(property.name)), values_.last_place(),
                                fmt::format("must be 0..{} to fit into the rest of the file", most));
     }
     const auto size = static_cast<uint64_t>(count);
@@ -142,7 +153,7 @@ class PlyReader {
       if (!values_.read(property.type, value)) return bad_value(element, property);
       if (!wanted) continue;
       if (!(std::abs(value) <= kLargestIndex) || value != std::trunc(value)) {
-        return source_.malformed(fmt::format("vertex index {}", value), values_.place(), "must be an integer");
+        return source_.malformed(fmt::format("vertex index {}", value), values_.last_place(), "must be an integer");
       }
       list_.push_back(static_cast<int64_t>(value));
     }
@@ -152,7 +163,7 @@ class PlyReader {
   absl::Status bad_value(const PlyElement& element, const PlyProperty& property) const {
     return source_.malformed(
         fmt::format("element {} ends early or has no number for {}", in_quotes(element.name), in_quotes(property.name)),
-        values_.place(), fmt::format("must have {} rows", element.count));
+        values_.last_place(), fmt::format("must have {} rows", element.count));
   }
 
   absl::Status read_vertices(const PlyElement& element) {
@@ -175,7 +186,7 @@ class PlyReader {
                      row_[static_cast<size_t>(at[2])]};
     };
     for (uint64_t i = 0; i < element.count; ++i) {
-      const Place place = values_.place();
+      const Place place = values_.next_place();
       status = read_row(element, -1);
       if (status.ok()) status = builder_.add_vertex(three(position), place);
       if (!status.ok()) return status;
@@ -200,7 +211,7 @@ class PlyReader {
       if (!has_vertices_) return source_.unsupported("PLY with faces before its vertices");
     }
     for (uint64_t i = 0; i < element.count; ++i) {
-      const Place place = values_.place();
+      const Place place = values_.next_place();
       absl::Status status = read_row(element, indices);
       if (status.ok() && indices >= 0) status = strips ? add_strips(place) : add_face(place);
       if (!status.ok()) return status;

@@ -1,0 +1,120 @@
+// The meshes and the malformed files of the data that is shared with the project.
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include "tests/unit/readers/mesh_files.h"
+
+namespace diaphane::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kData = fs::path(DIAPHANE_SOURCE_DIR) / ".." / "shared" / "data";
+
+uint64_t triangle_count(const LoadedFile& file) {
+  uint64_t count = 0;
+  for (const MeshData& mesh : file.meshes) count += mesh.triangles.size() / 3;
+  return count;
+}
+
+// File → triangles, of the table in the data's README: | `file` | kB | source | licence | tris | ...
+std::map<std::string, uint64_t> documented_triangles() {
+  std::map<std::string, uint64_t> triangles;
+  std::ifstream readme(kData / "README.md");
+  for (std::string line; std::getline(readme, line);) {
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, '|');) {
+      const size_t begin = cell.find_first_not_of(" `");
+      cells.push_back(begin == std::string::npos ? "" : cell.substr(begin, cell.find_last_not_of(" `") + 1 - begin));
+    }
+    if (cells.size() < 7 || cells[5].empty() || cells[5].find_first_not_of("0123456789") != std::string::npos) continue;
+    if (fs::exists(kData / "meshes" / cells[1])) triangles[cells[1]] = std::stoull(cells[5]);
+  }
+  return triangles;
+}
+
+TEST(SharedMeshes, HaveTheirDocumentedTriangles) {
+  if (!fs::exists(kData / "meshes")) GTEST_SKIP() << "no " << kData / "meshes";
+  std::map<std::string, uint64_t> expected = documented_triangles();
+  ASSERT_GT(expected.size(), 50u);
+  // The table counts what meshes are defined, these files place some of them more than once.
+  expected["gltf/AttenuationTest.glb"] = 292;
+  expected["gltf/BlenderIO_16_volume.glb"] = 296;
+  expected["gltf/NegativeScaleTest.glb"] = 7724;
+  expected["gltf/RecursiveSkeletons.glb"] = 84 * 76;
+  for (const auto& [name, triangles] : expected) {
+    const auto file = read_mesh_file(kData / "meshes" / name);
+    ASSERT_TRUE(file.ok()) << file.status();
+    EXPECT_EQ(triangle_count(*file), triangles) << name;
+    for (const MeshData& mesh : file->meshes) {
+      EXPECT_TRUE(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size()) << name;
+      EXPECT_LT(*std::max_element(mesh.triangles.begin(), mesh.triangles.end()), mesh.positions.size()) << name;
+    }
+  }
+}
+
+struct Outcome {
+  bool exited = false;
+  std::string line;  // "read", or the status
+  long peak_kib = 0;
+};
+
+// Reads `path` in a process of its own, which may use 5 seconds of processor and not for ever.
+Outcome read_apart(const fs::path& path) {
+  int ends[2];
+  if (pipe(ends) != 0) return {};
+  const pid_t child = fork();
+  if (child == 0) {
+    const rlimit seconds{5, 5};
+    setrlimit(RLIMIT_CPU, &seconds);
+    alarm(60);
+    const auto file = read_mesh_file(path);
+    const std::string line = file.ok() ? "read" : file.status().ToString();
+    if (write(ends[1], line.data(), line.size()) < 0) _exit(2);
+    _exit(file.ok() && triangle_count(*file) == 0 ? 3 : 0);
+  }
+  close(ends[1]);
+  Outcome outcome;
+  char buffer[4096];
+  for (ssize_t got; (got = read(ends[0], buffer, sizeof(buffer))) > 0;)
+    outcome.line.append(buffer, static_cast<size_t>(got));
+  close(ends[0]);
+  int status = 0;
+  rusage usage{};
+  wait4(child, &status, 0, &usage);
+  outcome.exited = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  outcome.peak_kib = usage.ru_maxrss;
+  return outcome;
+}
+
+TEST(SharedMalformedFiles, AreReadOrRefusedInOneLine) {
+  if (!fs::exists(kData / "malformed")) GTEST_SKIP() << "no " << kData / "malformed";
+  std::map<std::string, int> outcomes;
+  for (const auto& entry : fs::recursive_directory_iterator(kData / "malformed")) {
+    if (!entry.is_regular_file() || entry.path().extension() == ".exr") continue;
+    const Outcome outcome = read_apart(entry.path());
+    EXPECT_TRUE(outcome.exited) << entry.path() << ": " << outcome.line;
+    EXPECT_LT(outcome.peak_kib, 1 << 20) << entry.path();
+    EXPECT_EQ(std::count(outcome.line.begin(), outcome.line.end(), '\n'), 0) << outcome.line;
+    if (outcome.line != "read") {
+      EXPECT_THAT(outcome.line, ::testing::HasSubstr(entry.path().string() + ": ")) << entry.path();
+      EXPECT_LT(outcome.line.size(), entry.path().string().size() + 300) << outcome.line;
+    }
+    ++outcomes[outcome.line.substr(0, outcome.line.find(':'))];
+  }
+  for (const auto& [outcome, count] : outcomes) {
+    RecordProperty(outcome, count);
+    EXPECT_THAT(outcome,
+                ::testing::AnyOf("read", "INVALID_ARGUMENT", "NOT_FOUND", "RESOURCE_EXHAUSTED", "UNIMPLEMENTED"));
+  }
+  EXPECT_GT(outcomes["read"], 50);
+}
+
+}  // namespace
+}  // namespace diaphane::testing

@@ -34,15 +34,6 @@ Face make_face(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   return face;
 }
 
-GatherSettings settings_of(Quality quality, bool absorbing) {
-  switch (quality) {
-    case Quality::kDraft: return absorbing ? GatherSettings{0.40f, 0.60f} : GatherSettings{0.50f, 0.65f};
-    case Quality::kNormal: return absorbing ? GatherSettings{0.28f, 0.45f} : GatherSettings{0.36f, 0.52f};
-    case Quality::kFine: break;
-  }
-  return absorbing ? GatherSettings{0.24f, 0.40f} : GatherSettings{0.28f, 0.45f};
-}
-
 /// Above this σ·zr in any channel the kernel falls off too fast for the wider openings.
 constexpr float kAbsorbing = 0.3f;
 
@@ -53,6 +44,18 @@ bool same_colour(const glm::vec3& a, const glm::vec3& b) {
 }
 
 }  // namespace
+
+Openings openings_of(Quality quality, const optics::Coefficients& material) {
+  const optics::Dipole dipole = optics::make_dipole(material);
+  const glm::vec3 absorption = dipole.effective_transport_mm * dipole.mean_free_path_mm;
+  const bool absorbing = std::max({absorption.x, absorption.y, absorption.z}) > kAbsorbing;
+  switch (quality) {
+    case Quality::kDraft: return absorbing ? Openings{0.40f, 0.60f} : Openings{0.50f, 0.65f};
+    case Quality::kNormal: return absorbing ? Openings{0.28f, 0.45f} : Openings{0.36f, 0.52f};
+    case Quality::kFine: break;
+  }
+  return absorbing ? Openings{0.24f, 0.40f} : Openings{0.28f, 0.45f};
+}
 
 struct DipoleIntegral::State {
   State(std::shared_ptr<const SurfaceTopology> surface, int threads)
@@ -77,6 +80,7 @@ struct DipoleIntegral::State {
   std::vector<glm::vec3> irradiance;  ///< by slot
   std::vector<uint8_t> has_twins;     ///< by slot
   bool coloured = false;
+  optics::Coefficients material;
   KernelSet kernels;
   std::vector<GatherJob> jobs;
   tbb::enumerable_thread_specific<GatherScratch> scratch;
@@ -195,7 +199,10 @@ void DipoleIntegral::refit_flux() {
   s.tree.refit_flux_top(s.coloured);
 }
 
-void DipoleIntegral::set_material(const optics::Coefficients& material) { state_->kernels.set_material(material); }
+void DipoleIntegral::set_material(const optics::Coefficients& material) {
+  state_->material = material;
+  state_->kernels.set_material(material);
+}
 
 void DipoleIntegral::prepare_tables() {
   State& s = *state_;
@@ -204,11 +211,14 @@ void DipoleIntegral::prepare_tables() {
 }
 
 void DipoleIntegral::gather(Quality quality, std::span<glm::vec3> radiosity) {
+  gather(openings_of(quality, state_->material), radiosity);
+}
+
+void DipoleIntegral::gather(const Openings& openings, std::span<glm::vec3> radiosity) {
   prepare_tables();
   State& s = *state_;
-  GatherInput input{&s.tree, &s.kernels, s.irradiance.data(), s.topology->vertex_of_slot.data(), radiosity.data(),
-                    settings_of(quality, s.kernels.largest_absorption() > kAbsorbing)};
-  input.settings.coloured = s.coloured;
+  const GatherInput input{&s.tree, &s.kernels, s.irradiance.data(), s.topology->vertex_of_slot.data(), radiosity.data(),
+                    {openings.groups, openings.vertices, s.coloured}};
   const size_t jobs = collect_jobs(input, s.scratch.local(), s.jobs);
   s.for_each(static_cast<uint32_t>(jobs), [&](uint32_t job) { run_job(input, s.scratch.local(), s.jobs[job]); });
   for (const uint32_t v : s.topology->twins) {

@@ -14,6 +14,16 @@ namespace diaphane::diffusion {
 /// Accuracy against time; docs/integral.md has both, measured.
 enum class Quality { kDraft, kNormal, kFine };
 
+/// How wide a group of vertices may look, radius over distance, and still be taken as one: between groups, and from a group
+/// to single vertices. Smaller is slower and more accurate.
+struct Openings {
+  float groups;
+  float vertices;
+};
+
+/// What a quality means for a material.
+Openings openings_of(Quality quality, const optics::Coefficients& material);
+
 /// One body. Its stages, in the order in which they feed each other; a caller leaves out those whose inputs did not change:
 ///
 ///     update_positions → refit_geometry ─┐
@@ -49,6 +59,7 @@ class DipoleIntegral {
 
   /// Radiosity B, RGB, W·mm⁻², into `radiosity` [vertex_count].
   void gather(Quality quality, std::span<glm::vec3> radiosity);
+  void gather(const Openings& openings, std::span<glm::vec3> radiosity);
 
   const SurfaceTopology& topology() const;
   /// Memory that the integral holds, its share of the topology included, bytes.

@@ -141,10 +141,8 @@ void KernelSet::set_material(const optics::Coefficients& material) {
   dipole_ = optics::make_dipole(material);
   const glm::vec3 smooth = smooth_distance_mm(dipole_);
   smooth_mm_ = std::min({smooth.x, smooth.y, smooth.z});
-  largest_absorption_ = 0;
   for (int c = 0; c < 3; ++c) {
     gaussians_[c] = fit_gaussians(dipole_, c);
-    largest_absorption_ = std::max(largest_absorption_, dipole_.effective_transport_mm[c] * dipole_.mean_free_path_mm[c]);
   }
   diameter_mm_ = 0;
 }

@@ -62,8 +62,6 @@ class KernelSet {
   const glm::vec3& local_response(uint8_t spacing_key) const { return local_response_[spacing_key]; }
   /// The smallest smooth distance of the channels, mm.
   float smooth_mm() const { return smooth_mm_; }
-  /// The largest σ·zr of the channels.
-  float largest_absorption() const { return largest_absorption_; }
 
  private:
   void build(uint8_t key);
@@ -71,7 +69,6 @@ class KernelSet {
   optics::Dipole dipole_;
   std::array<GaussianSum, 3> gaussians_;
   float smooth_mm_ = 1;
-  float largest_absorption_ = 0;
   float diameter_mm_ = 0;
   KernelDomain domain_;
   KernelTable far_;

@@ -156,29 +156,32 @@ Mesh make_cup(float radius_mm, float height_mm, float wall_mm, float spacing_mm)
   return mesh;
 }
 
-Mesh make_box(const glm::vec3& extent_mm, int cells) {
+Mesh make_box(const glm::vec3& extent_mm, float spacing_mm) {
   Mesh mesh;
   for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto columns = static_cast<uint32_t>(std::ceil(extent_mm[u] / spacing_mm));
+    const auto rows = static_cast<uint32_t>(std::ceil(extent_mm[v] / spacing_mm));
     for (int side = -1; side <= 1; side += 2) {
-      glm::vec3 normal(0), across(0), up(0);
+      glm::vec3 normal(0);
       normal[axis] = static_cast<float>(side);
-      across[(axis + 1) % 3] = static_cast<float>(side);
-      up[(axis + 2) % 3] = 1;
       const auto first = static_cast<uint32_t>(mesh.positions_mm.size());
-      for (int j = 0; j <= cells; ++j) {
-        for (int i = 0; i <= cells; ++i) {
-          const float a = 2 * static_cast<float>(i) / static_cast<float>(cells) - 1;
-          const float b = 2 * static_cast<float>(j) / static_cast<float>(cells) - 1;
-          mesh.positions_mm.push_back(0.5f * extent_mm * (normal + a * across + b * up));
+      for (uint32_t j = 0; j <= rows; ++j) {
+        for (uint32_t i = 0; i <= columns; ++i) {
+          // The far side runs backwards, so that all triangles run counter-clockwise.
+          glm::vec3 p = normal;
+          p[u] = static_cast<float>(side) * (2 * static_cast<float>(i) / static_cast<float>(columns) - 1);
+          p[v] = 2 * static_cast<float>(j) / static_cast<float>(rows) - 1;
+          mesh.positions_mm.push_back(0.5f * extent_mm * p);
           mesh.normals.push_back(normal);
         }
       }
-      const auto row = static_cast<uint32_t>(cells) + 1;
-      for (uint32_t j = 0; j + 1 < row; ++j) {
-        for (uint32_t i = 0; i + 1 < row; ++i) {
-          const uint32_t v = first + j * row + i;
-          mesh.triangles.emplace_back(v, v + 1, v + row + 1);
-          mesh.triangles.emplace_back(v, v + row + 1, v + row);
+      const uint32_t stride = columns + 1;
+      for (uint32_t j = 0; j < rows; ++j) {
+        for (uint32_t i = 0; i < columns; ++i) {
+          const uint32_t a = first + j * stride + i;
+          mesh.triangles.emplace_back(a, a + 1, a + stride + 1);
+          mesh.triangles.emplace_back(a, a + stride + 1, a + stride);
         }
       }
     }

@@ -10,6 +10,7 @@
 #include "glm/geometric.hpp"
 #include "optics/presets.h"
 #include "tests/support/meshes.h"
+#include "tests/support/rays.h"
 
 namespace diaphane::diffusion {
 namespace {
@@ -19,52 +20,6 @@ using testing::Mesh;
 struct Light {
   glm::vec3 position_mm;
   float intensity_w_sr;
-};
-
-/// Light rays against a mesh.
-class Occlusion {
- public:
-  explicit Occlusion(const Mesh& mesh) : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_)) {
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
-                                             mesh.positions_mm.size());
-    std::copy(mesh.positions_mm.begin(), mesh.positions_mm.end(), static_cast<glm::vec3*>(vertices));
-    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
-                                            mesh.triangles.size());
-    std::copy(mesh.triangles.begin(), mesh.triangles.end(), static_cast<glm::uvec3*>(indices));
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
-  }
-  Occlusion(const Occlusion&) = delete;
-  ~Occlusion() {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-
-  bool sees(const glm::vec3& from_mm, const glm::vec3& to_mm) const {
-    RTCRayHit ray{};
-    const glm::vec3 way = to_mm - from_mm;
-    ray.ray = {.org_x = from_mm.x,
-               .org_y = from_mm.y,
-               .org_z = from_mm.z,
-               .tnear = 1e-4f,
-               .dir_x = way.x,
-               .dir_y = way.y,
-               .dir_z = way.z,
-               .time = 0,
-               .tfar = 1,
-               .mask = 0xffffffffu};
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(scene_, &context, &ray.ray);
-    return ray.ray.tfar > 0;
-  }
-
- private:
-  RTCDevice device_;
-  RTCScene scene_;
 };
 
 class ReferencePoints : public ::testing::TestWithParam<const char*> {
@@ -117,12 +72,12 @@ TEST_P(ReferencePoints, AgreeWithoutShadows) {
 }
 
 TEST_P(ReferencePoints, AgreeWithShadows) {
-  const Occlusion occlusion(*mesh_);
+  const testing::MeshRays rays(*mesh_);
   expect_agreement(
       [&](const glm::vec3& p, const glm::vec3& n) {
         const glm::vec3 e = irradiance(p, n);
         // From just above the surface, where the light is on its outer side.
-        return e.x > 0 && occlusion.sees(p + 1e-3f * n, light_.position_mm) ? e : glm::vec3(0);
+        return e.x > 0 && rays.sees(p + 1e-3f * n, light_.position_mm) ? e : glm::vec3(0);
       },
       "B_Ft_shadowed");
 }
@@ -132,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ReferencePoints,
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(Surfels, CoverTheWholeAreaAtAnySplitting) {
-  const Mesh box = testing::make_box({2, 3, 4}, 1);
+  const Mesh box = testing::make_box({2, 3, 4}, 4);
   for (const uint32_t splits : {1u, 2u, 5u}) {
     const Surfels surfels = sample_surface(box.triangles, box.positions_mm, box.normals,
                                            [](auto&, auto&) { return glm::vec3(1, 2, 0); }, {.splits = splits});
@@ -146,7 +101,7 @@ TEST(Surfels, CoverTheWholeAreaAtAnySplitting) {
 }
 
 TEST(Surfels, SplitLongEdgesToTheSpacing) {
-  const Mesh box = testing::make_box({4, 4, 4}, 1);
+  const Mesh box = testing::make_box({4, 4, 4}, 4);
   const Surfels surfels = sample_surface(box.triangles, box.positions_mm, box.normals,
                                          [](auto&, auto&) { return glm::vec3(1); }, {.splits = 1, .spacing_mm = 1});
   EXPECT_EQ(surfels.positions_mm.size(), 12u * 6 * 6);  // diagonals of 5.66 mm

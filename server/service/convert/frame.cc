@@ -106,7 +106,11 @@ absl::StatusOr<render::RenderSettings> from_proto(const v1::RenderSettings& mess
   if (!paper.ok()) return paper.status();
   absl::Status exposure = check_range("settings.exposure_ev", message.exposure_ev(), -32, 32);
   if (!exposure.ok()) return exposure;
-  return render::RenderSettings{*technique, *paper, message.exposure_ev()};
+  render::RenderSettings settings;
+  settings.technique = *technique;
+  settings.paper = *paper;
+  settings.exposure_ev = message.exposure_ev();
+  return settings;
 }
 
 absl::StatusOr<encode::Encoding> from_proto(const v1::Encoding& message) {

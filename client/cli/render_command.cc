@@ -51,18 +51,21 @@ absl::Status fill_scene(const Scene& scene, const RenderPlan& plan, Progress& pr
   return absl::OkStatus();
 }
 
+absl::StatusOr<RenderedFrame> render_scene(const Scene& scene, const RenderPlan& plan, Progress& progress) {
+  if (absl::Status status = fill_scene(scene, plan, progress); !status.ok()) return status;
+  progress.step(fmt::format("rendering {}x{}", plan.options.size.width_px, plan.options.size.height_px));
+  return scene.render(plan.options);
+}
+
 absl::StatusOr<RenderedFrame> make_frame(const Client& client, RenderPlan* plan, Progress& progress) {
   if (absl::Status status = resolve_refractive_index(client, plan); !status.ok()) return status;
   const absl::StatusOr<Scene> scene =
       client.create_scene({.display_name = plan->display_name, .millimetres_per_unit = plan->millimetres_per_unit});
   if (!scene.ok()) return scene.status();
-  absl::StatusOr<RenderedFrame> frame = fill_scene(*scene, *plan, progress);
-  if (frame.status().ok()) {
-    progress.step(fmt::format("rendering {}x{}", plan->options.size.width_px, plan->options.size.height_px));
-    frame = scene->render(plan->options);
-  }
+  absl::StatusOr<RenderedFrame> frame = render_scene(*scene, *plan, progress);
   const absl::Status removed = scene->remove();
-  return frame.ok() && !removed.ok() ? removed : std::move(frame);
+  if (frame.ok() && !removed.ok()) return removed;
+  return frame;
 }
 
 void report(const GlobalOptions& global, const RenderArguments& arguments, const RenderPlan& plan,

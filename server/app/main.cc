@@ -18,7 +18,8 @@ int run(const Options& options) {
   auto server = Server::start(options.server, [&] { return render::make_gl_renderer(options.renderer); });
   if (!server.ok()) {
     std::fprintf(stderr, "diaphane-server: %s\n", std::string(server.status().message()).c_str());
-    return 1;
+    const bool misused = absl::IsInvalidArgument(server.status()) || absl::IsFailedPrecondition(server.status());
+    return misused ? kUsageError : 1;
   }
   const render::RendererInfo& renderer = (*server)->renderer();
   spdlog::info("ready version={} address={} renderer=\"{}\" reason=\"{}\"", kVersion, (*server)->address(),

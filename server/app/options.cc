@@ -8,8 +8,6 @@
 namespace diaphane::app {
 namespace {
 
-constexpr int kUsageError = 2;
-
 void add_limits(CLI::App& app, service::ServiceLimits& limits, uint64_t& mesh_mib, double& upload_silence_s) {
   const CLI::Range positive(1u, UINT32_MAX);
   const auto add = [&](const char* name, auto& value, const char* description) {

@@ -18,6 +18,8 @@ struct Options {
   bool exit_with_stdin = false;
 };
 
+inline constexpr int kUsageError = 2;
+
 /// The options, or the exit code after --help, --version (0) or a usage error (2), which it has printed.
 std::variant<Options, int> parse_options(int argc, char** argv);
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "fmt/format.h"
+#include "readers/gltf_json.h"
 #include "readers/gltf_types.h"
 
 namespace diaphane::readers {
@@ -15,9 +16,6 @@ namespace {
 using nlohmann::json;
 
 constexpr size_t kMostJsonBytes = size_t{256} << 20;
-constexpr int kDeepestJson = 64;
-constexpr uint64_t kMostJsonValues = 8'000'000;
-constexpr uint64_t kMostObjectsPerNode = 10;  // a node with its own mesh, primitive, accessors and views
 
 constexpr size_t kGlbHeaderBytes = 12;
 constexpr size_t kGlbChunkHeaderBytes = 8;
@@ -30,59 +28,6 @@ constexpr std::string_view kArrays[] = {"accessors", "buffers", "bufferViews",  
 // Required extensions that change nothing of what is read here.
 constexpr std::string_view kHarmlessPrefixes[] = {"KHR_materials_", "KHR_texture_",  "KHR_lights_", "KHR_animation_",
                                                   "EXT_texture_",   "MSFT_texture_", "KHR_xmp"};
-
-// Picks what is read out of the events of a JSON parse, and stops it when there is too much.
-class JsonFilter {
- public:
-  struct Excess {
-    std::string_view what;
-    uint64_t limit;
-  };
-
-  explicit JsonFilter(uint64_t most_objects) : most_objects_(most_objects) {}
-
-  /// Whether the parser keeps what `event` is about. Throws Excess.
-  bool operator()(int depth, json::parse_event_t event, json& parsed) {
-    if (depth > kDeepestJson) throw Excess{"levels of JSON", kDeepestJson};
-    if (depth < skipped_depth_) skipped_depth_ = kNotSkipping;
-    if (event == json::parse_event_t::key) {
-      if (depth <= skipped_depth_)
-        skipped_depth_ = is_read(depth, parsed.get_ref<const std::string&>()) ? kNotSkipping : depth;
-      return skipped_depth_ == kNotSkipping;
-    }
-    if (skipped_depth_ != kNotSkipping) return false;
-    if (event == json::parse_event_t::object_start && ++objects_ > most_objects_) {
-      throw Excess{"JSON objects", most_objects_};
-    }
-    if (event == json::parse_event_t::value || event == json::parse_event_t::array_start) {
-      if (++values_ > kMostJsonValues) throw Excess{"JSON values", kMostJsonValues};
-      keep_whole(parsed);
-    }
-    return true;
-  }
-
- private:
-  static constexpr int kNotSkipping = std::numeric_limits<int>::max();
-
-  static bool is_read(int depth, const std::string& key) {
-    if (depth > 1) return key != "extras" && key != "extensions" && key != "min" && key != "max";
-    return key == "asset" || key == "scene" ||
-           std::find(std::begin(kArrays), std::end(kArrays), key) != std::end(kArrays);
-  }
-
-  // tinygltf would cut an integer to 32 bits; check_gltf_types() refuses it where it is no plain number.
-  static void keep_whole(json& value) {
-    const bool too_large = value.is_number_unsigned()  ? value.get<uint64_t>() > std::numeric_limits<int32_t>::max()
-                           : value.is_number_integer() ? value.get<int64_t>() < std::numeric_limits<int32_t>::min()
-                                                       : false;
-    if (too_large) value = value.get<double>();
-  }
-
-  const uint64_t most_objects_;
-  uint64_t objects_ = 0;
-  uint64_t values_ = 0;
-  int skipped_depth_ = kNotSkipping;  // of the key whose value is passed over
-};
 
 uint32_t read_u32(std::string_view bytes, size_t offset) {
   std::array<unsigned char, 4> b;
@@ -167,17 +112,9 @@ absl::Status parse_json(std::string_view text, GltfDocument& document, const Sou
   if (text.size() > kMostJsonBytes) return source.over_limit("bytes of JSON", text.size(), kMostJsonBytes);
   const size_t first = std::min(text.find_first_not_of(" \t\r\n\xef\xbb\xbf"), text.size());
   if (text.substr(first, 1) != "{") return source.malformed("is neither a JSON object nor GLB", Place{"byte", first});
-  JsonFilter filter(kMostObjectsPerNode * uint64_t{source.limits.max_nodes} + 1000);
-  try {
-    document.json = json::parse(text.begin(), text.end(), std::ref(filter));
-  } catch (const JsonFilter::Excess& excess) {
-    return source.error(absl::StatusCode::kResourceExhausted, fmt::format("too many {}", excess.what), {},
-                        fmt::format("must be at most {}", excess.limit));
-  } catch (const json::parse_error& error) {
-    return source.malformed("is not well-formed JSON", Place{"byte", error.byte});
-  } catch (const json::exception&) {  // a number beyond the range of double
-    return source.malformed("holds a JSON number that is out of range");
-  }
+  GltfJsonBuilder builder(source);
+  if (!json::sax_parse(text.begin(), text.end(), &builder)) return builder.error();
+  document.json = builder.take();
   for (std::string_view name : kArrays) {
     const auto entry = document.json.find(std::string(name));
     if (entry != document.json.end() && !entry->is_array()) {

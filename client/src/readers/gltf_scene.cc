@@ -106,31 +106,35 @@ class ScenePlacer {
     return roots;
   }
 
-  // Each node once and without recursion, so that neither a cycle nor a deep chain is a danger.
+  // Without recursion, so that a deep chain is no danger. A node is marked when it is put on the list: neither a cycle
+  // nor a child that is named a million times makes the list longer than there are nodes.
   absl::Status walk(const std::vector<int>& roots) {
-    std::vector<Visit> open;
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root) open.push_back({*root, kIdentity});
-    while (!open.empty()) {
-      const Visit visit = open.back();
-      open.pop_back();
-      if (visit.node < 0 || static_cast<size_t>(visit.node) >= model_.nodes.size()) {
-        return source_.malformed(fmt::format("node {}", visit.node), "",
-                                 fmt::format("there are {}", model_.nodes.size()));
-      }
-      if (reached_[static_cast<size_t>(visit.node)]) {
-        return source_.malformed("is reached twice", Place{"node", static_cast<uint64_t>(visit.node)},
-                                 "the nodes must be a tree");
-      }
-      reached_[static_cast<size_t>(visit.node)] = true;
+    absl::Status status = put_off(roots, kIdentity);
+    while (status.ok() && !open_.empty()) {
+      const Visit visit = open_.back();
+      open_.pop_back();
       const tinygltf::Node& node = model_.nodes[static_cast<size_t>(visit.node)];
       const absl::StatusOr<Matrix> local = local_matrix(node, visit.node);
       if (!local.ok()) return local.status();
       const Matrix scene_from_node = multiply(visit.scene_from_parent, *local);
-      const absl::Status status = place_mesh(node, visit.node, scene_from_node);
-      if (!status.ok()) return status;
-      for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
-        open.push_back({*child, scene_from_node});
+      status = place_mesh(node, visit.node, scene_from_node);
+      if (status.ok()) status = put_off(node.children, scene_from_node);
+    }
+    return status;
+  }
+
+  // Puts nodes on the list of those to visit, the first on top.
+  absl::Status put_off(const std::vector<int>& nodes, const Matrix& scene_from_parent) {
+    for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
+      if (*node < 0 || static_cast<size_t>(*node) >= model_.nodes.size()) {
+        return source_.malformed(fmt::format("node {}", *node), "", fmt::format("there are {}", model_.nodes.size()));
       }
+      if (reached_[static_cast<size_t>(*node)]) {
+        return source_.malformed("is reached twice", Place{"node", static_cast<uint64_t>(*node)},
+                                 "the nodes must be a tree");
+      }
+      reached_[static_cast<size_t>(*node)] = true;
+      open_.push_back({*node, scene_from_parent});
     }
     return absl::OkStatus();
   }
@@ -180,6 +184,7 @@ class ScenePlacer {
   const Source& source_;
   std::vector<std::string>& warnings_;
   std::vector<bool> reached_;
+  std::vector<Visit> open_;
   std::vector<GltfInstance> instances_;
   uint64_t flattened_ = 0;
 };

@@ -19,6 +19,26 @@ Json to_json(const Vec3& value) { return {to_json(value.x), to_json(value.y), to
 
 Json to_json(const Rgb& value) { return {to_json(value.r), to_json(value.g), to_json(value.b)}; }
 
+Json to_json(const PointLight& light) {
+  return {{"position", to_json(light.position)},
+          {"intensity_w_sr", to_json(light.intensity_w_sr)},
+          {"radius_mm", to_json(light.radius_mm)}};
+}
+
+Json to_json(const Light& light) {
+  if (const auto* point = std::get_if<PointLight>(&light)) return {{"point", to_json(*point)}};
+  if (const auto* directional = std::get_if<DirectionalLight>(&light)) {
+    return {{"directional",
+             {{"direction", to_json(directional->direction)}, {"irradiance", to_json(directional->irradiance)}}}};
+  }
+  const auto& spot = std::get<SpotLight>(light);
+  return {{"spot",
+           {{"point", to_json(spot.point)},
+            {"direction", to_json(spot.direction)},
+            {"inner_angle_deg", to_json(spot.inner_angle_deg)},
+            {"outer_angle_deg", to_json(spot.outer_angle_deg)}}}};
+}
+
 Json to_json(const Coefficients& coefficients) {
   return {{"absorption_mm", to_json(coefficients.absorption_mm)},
           {"reduced_scattering_mm", to_json(coefficients.reduced_scattering_mm)},
@@ -75,9 +95,8 @@ Json to_json(const SceneDescription& description) {
   }
   json["lights"] = Json::array();
   for (const LightInfo& info : description.lights) {
-    json["lights"].push_back({{"name", info.handle.name},
-                              {"position", to_json(info.light.position)},
-                              {"intensity_w_sr", to_json(info.light.intensity_w_sr)}});
+    json["lights"].push_back(to_json(info.light));
+    json["lights"].back()["name"] = info.handle.name;
   }
   json["meshes"] = Json::array();
   for (const MeshInfo& info : description.meshes) {

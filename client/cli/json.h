@@ -17,6 +17,8 @@ using Json = nlohmann::ordered_json;
 Json to_json(float value);
 Json to_json(const Vec3& value);
 Json to_json(const Rgb& value);
+Json to_json(const PointLight& light);
+Json to_json(const Light& light);
 Json to_json(const Coefficients& coefficients);
 Json to_json(const MaterialPreset& preset);
 Json to_json(const ServerInfo& info);

@@ -56,10 +56,22 @@ std::optional<Rgb> parse_rgb(std::string_view text) {
   return Rgb{n[0], n[1], n[2]};
 }
 
-std::optional<PointLight> parse_point_light(std::string_view text) {
+std::optional<Light> parse_point_light(std::string_view text) {
   std::array<float, 6> n;
   if (!parse_numbers(text, n)) return std::nullopt;
   return PointLight{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+}
+
+std::optional<Light> parse_directional_light(std::string_view text) {
+  std::array<float, 6> n;
+  if (!parse_numbers(text, n)) return std::nullopt;
+  return DirectionalLight{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+}
+
+std::optional<Light> parse_spot_light(std::string_view text) {
+  std::array<float, 11> n;
+  if (!parse_numbers(text, n)) return std::nullopt;
+  return SpotLight{{{n[0], n[1], n[2]}, {n[8], n[9], n[10]}}, {n[3], n[4], n[5]}, n[6], n[7]};
 }
 
 std::optional<Size> parse_size(std::string_view text) {
@@ -83,6 +95,10 @@ std::optional<ImageFormat> format_of(const std::filesystem::path& path) {
 }
 
 std::string technique_names() { return joined(std::span<const NamedTechnique>(kTechniques)); }
+
+std::string quality_names() { return joined(std::span<const NamedQuality>(kQualities)); }
+
+std::string shadows_names() { return joined(std::span<const NamedShadows>(kShadows)); }
 
 std::string terms_names() { return joined(std::span<const NamedTerms>(kTerms)); }
 

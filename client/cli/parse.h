@@ -15,16 +15,23 @@ namespace diaphane::cli {
 /// Exactly `numbers.size()` finite numbers between commas. False, and nothing is written, for anything else.
 bool parse_numbers(std::string_view text, std::span<float> numbers);
 
-std::optional<Vec3> parse_vec3(std::string_view text);               ///< X,Y,Z
-std::optional<Rgb> parse_rgb(std::string_view text);                 ///< R,G,B
-std::optional<PointLight> parse_point_light(std::string_view text);  ///< X,Y,Z,R,G,B
-std::optional<Size> parse_size(std::string_view text);               ///< WxH, both above 0
+std::optional<Vec3> parse_vec3(std::string_view text);  ///< X,Y,Z
+std::optional<Rgb> parse_rgb(std::string_view text);    ///< R,G,B
+/// X,Y,Z,R,G,B: scene units, then W/sr.
+std::optional<Light> parse_point_light(std::string_view text);
+/// DX,DY,DZ,R,G,B: the way in which it shines, then W/mm² on a surface that faces it.
+std::optional<Light> parse_directional_light(std::string_view text);
+/// X,Y,Z,DX,DY,DZ,INNER,OUTER,R,G,B: place, axis, angles from the axis in degrees, W/sr.
+std::optional<Light> parse_spot_light(std::string_view text);
+std::optional<Size> parse_size(std::string_view text);  ///< WxH, both above 0
 
 /// By the file's extension, in any case.
 std::optional<ImageFormat> format_of(const std::filesystem::path& path);
 
 /// The names, with " | " between them.
 std::string technique_names();
+std::string quality_names();
+std::string shadows_names();
 std::string terms_names();
 
 }  // namespace diaphane::cli

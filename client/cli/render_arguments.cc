@@ -58,6 +58,20 @@ std::optional<Technique> parse_technique(std::string_view text) {
   return std::nullopt;
 }
 
+std::optional<Quality> parse_quality(std::string_view text) {
+  for (const NamedQuality& entry : kQualities) {
+    if (entry.name == text) return entry.quality;
+  }
+  return std::nullopt;
+}
+
+std::optional<Shadows> parse_shadows(std::string_view text) {
+  for (const NamedShadows& entry : kShadows) {
+    if (entry.name == text) return entry.shadows;
+  }
+  return std::nullopt;
+}
+
 std::optional<Terms> parse_terms(std::string_view text) {
   for (const NamedTerms& entry : kTerms) {
     if (entry.name == text) return entry.terms;
@@ -89,6 +103,10 @@ void add_camera_options(CLI::App& command, RenderArguments& arguments) {
 void add_technique_options(CLI::App& command, RenderArguments& arguments) {
   add_parsed(command, "--technique", technique_names(), "How light inside the body is found", parse_technique,
              arguments.technique);
+  add_parsed(command, "--quality", quality_names(), "Of the integral (default: normal)", parse_quality,
+             arguments.quality);
+  add_parsed(command, "--shadows", shadows_names(), "Default: on for the integral and the reference", parse_shadows,
+             arguments.shadows);
   add_parsed(command, "--terms", terms_names(), "Which part of the paper technique's answer", parse_terms,
              arguments.terms);
   add_parsed(command, "--kernel", "N", "Taps a side of the paper technique's kernel, 3 to 6", parse_count,
@@ -97,6 +115,20 @@ void add_technique_options(CLI::App& command, RenderArguments& arguments) {
              arguments.face_size_px);
   add_parsed(command, "--global-gain", "G", "Multiplies its global term", parse_number, arguments.global_gain);
   add_parsed(command, "--exposure", "EV", "Stops; not applied to EXR", parse_number, arguments.exposure_ev);
+}
+
+// Lights of one form; the flag may be repeated.
+void add_lights(CLI::App& command, const std::string& flag, const std::string& form, const std::string& help,
+                Parse<Light> parse, std::vector<Light>& lights) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          flag,
+          [=, &lights](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) lights.push_back(parsed(flag, form, parse, text));
+          },
+          help)
+      ->type_name(form)
+      ->allow_extra_args(false);
 }
 
 }  // namespace
@@ -129,19 +161,17 @@ void add_render_options(CLI::App& command, RenderArguments& arguments) {
                             parse_above_zero, arguments.height_mm);
   height->excludes(unit);
   add_camera_options(command, arguments);
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--point-light",
-          [&arguments](const std::vector<std::string>& texts) {
-            for (const std::string& text : texts) {
-              arguments.point_lights.push_back(parsed("--point-light", "X,Y,Z,R,G,B", parse_point_light, text));
-            }
-          },
-          "A point light: mesh units, then W/sr; may be repeated (default: one key light)")
-      ->type_name("X,Y,Z,R,G,B")
-      ->allow_extra_args(false);
-  for (const char* flag :
-       {"--material", "--absorption", "--scattering", "--ior", "--mm-per-unit", "--height-mm", "--point-light"}) {
+  add_lights(command, "--point-light", "X,Y,Z,R,G,B",
+             "A point light: mesh units, then W/sr; may be repeated (default: one key light)", parse_point_light,
+             arguments.lights);
+  add_lights(command, "--directional-light", "DX,DY,DZ,R,G,B",
+             "Parallel light: the way in which it shines, then W/mm^2; may be repeated", parse_directional_light,
+             arguments.lights);
+  add_lights(command, "--spot-light", "X,Y,Z,DX,DY,DZ,INNER,OUTER,R,G,B",
+             "A spot: place, axis, angles from the axis in degrees, W/sr; may be repeated", parse_spot_light,
+             arguments.lights);
+  for (const char* flag : {"--material", "--absorption", "--scattering", "--ior", "--mm-per-unit", "--height-mm",
+                           "--point-light", "--directional-light", "--spot-light"}) {
     scene->excludes(command.get_option(flag));
   }
 }

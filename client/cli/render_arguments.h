@@ -19,6 +19,8 @@ struct RenderArguments {
   std::optional<Size> size;
 
   std::optional<Technique> technique;
+  std::optional<Quality> quality;
+  std::optional<Shadows> shadows;
   std::optional<Terms> terms;
   std::optional<uint32_t> kernel_taps;
   std::optional<uint32_t> face_size_px;
@@ -38,7 +40,7 @@ struct RenderArguments {
   std::optional<Vec3> up;
   std::optional<float> fov_y_deg;
 
-  std::vector<PointLight> point_lights;
+  std::vector<Light> lights;
 };
 
 /// Declares the options on `command`; parsing fills `arguments`, which must live as long. What cannot be parsed, is

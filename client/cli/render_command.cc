@@ -38,7 +38,7 @@ absl::Status fill_scene(const Scene& scene, const RenderPlan& plan, Progress& pr
     if (!handle.ok()) return handle.status();
     materials.push_back(*std::move(handle));
   }
-  for (const PointLight& light : plan.lights) {
+  for (const Light& light : plan.lights) {
     if (const auto handle = scene.add_light(light); !handle.ok()) return handle.status();
   }
   for (size_t i = 0; i < plan.meshes.size(); ++i) {

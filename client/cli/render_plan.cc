@@ -52,7 +52,7 @@ Material material_of(const RenderArguments& arguments) {
 absl::Status take_arguments(const RenderArguments& arguments, RenderPlan* plan, FileUnits* units) {
   plan->materials = {material_of(arguments)};
   if (!arguments.absorption_mm) plan->refractive_index = arguments.refractive_index;
-  plan->lights = arguments.point_lights;
+  plan->lights = arguments.lights;
   for (const std::string& mesh : arguments.meshes) {
     if (absl::Status status = read_meshes(mesh, MeshData().scene_from_mesh, 0, plan, units); !status.ok())
       return status;
@@ -87,6 +87,8 @@ void take_settings(const RenderArguments& arguments, RenderOptions* options) {
   RenderSettings& settings = options->settings;
   if (arguments.size) options->size = *arguments.size;
   if (arguments.technique) settings.technique = *arguments.technique;
+  if (arguments.quality) settings.quality = *arguments.quality;
+  if (arguments.shadows) settings.shadows = *arguments.shadows;
   if (arguments.terms) settings.paper.terms = *arguments.terms;
   if (arguments.kernel_taps) settings.paper.kernel_taps = *arguments.kernel_taps;
   if (arguments.face_size_px) settings.paper.face_size_px = *arguments.face_size_px;

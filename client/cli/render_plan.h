@@ -19,7 +19,7 @@ struct RenderPlan {
   std::vector<size_t> material_of_mesh;  ///< into `materials`, one per mesh
   std::vector<Material> materials;
   std::optional<float> refractive_index;  ///< in place of that of the only material, a preset
-  std::vector<PointLight> lights;         ///< at least one
+  std::vector<Light> lights;              ///< at least one
   double millimetres_per_unit = 1;
   RenderOptions options;
   std::vector<std::string> notes;  ///< one line each, for stderr

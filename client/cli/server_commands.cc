@@ -13,8 +13,6 @@ namespace {
 
 std::string text(const Rgb& value) { return fmt::format("{},{},{}", value.r, value.g, value.b); }
 
-std::string text(const Vec3& value) { return fmt::format("{},{},{}", value.x, value.y, value.z); }
-
 absl::StatusOr<Session> open_given_server(const GlobalOptions& global) {
   if (global.server.empty()) return usage_error("--server", "must be given: a private server has no scenes");
   return open_session(global);
@@ -31,8 +29,7 @@ void print_text(const SceneDescription& description) {
                info.resolved.refractive_index);
   }
   for (const LightInfo& info : description.lights) {
-    fmt::print("{}  point  at {}  {} W/sr\n", info.handle.name, text(info.light.position),
-               text(info.light.intensity_w_sr));
+    fmt::print("{}  {}\n", info.handle.name, to_json(info.light).dump());
   }
   for (const MeshInfo& info : description.meshes) {
     fmt::print("{}  {} vertices  {} triangles  {}\n", info.handle.name, info.vertex_count, info.triangle_count,

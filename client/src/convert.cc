@@ -9,6 +9,13 @@ namespace {
 static_assert(int{v1::TECHNIQUE_UNSPECIFIED} == static_cast<int>(Technique::kServerDefault));
 static_assert(int{v1::TECHNIQUE_PAPER} == static_cast<int>(Technique::kPaper));
 static_assert(int{v1::TECHNIQUE_LAMBERT} == static_cast<int>(Technique::kLambert));
+static_assert(int{v1::TECHNIQUE_INTEGRAL} == static_cast<int>(Technique::kIntegral));
+static_assert(int{v1::TECHNIQUE_REFERENCE} == static_cast<int>(Technique::kReference));
+static_assert(int{v1::QUALITY_DRAFT} == static_cast<int>(Quality::kDraft));
+static_assert(int{v1::QUALITY_NORMAL} == static_cast<int>(Quality::kNormal));
+static_assert(int{v1::QUALITY_FINE} == static_cast<int>(Quality::kFine));
+static_assert(int{v1::SHADOWS_ON} == static_cast<int>(Shadows::kOn));
+static_assert(int{v1::SHADOWS_OFF} == static_cast<int>(Shadows::kOff));
 static_assert(int{v1::TERMS_BOTH} == static_cast<int>(Terms::kBoth));
 static_assert(int{v1::TERMS_LOCAL} == static_cast<int>(Terms::kLocal));
 static_assert(int{v1::TERMS_GLOBAL} == static_cast<int>(Terms::kGlobal));
@@ -22,6 +29,21 @@ v1::Vec3 vec3(float x, float y, float z) {
   message.set_y(y);
   message.set_z(z);
   return message;
+}
+
+v1::PointLight point_to_proto(const PointLight& light) {
+  v1::PointLight message;
+  *message.mutable_position() = vec3(light.position.x, light.position.y, light.position.z);
+  *message.mutable_intensity() = vec3(light.intensity_w_sr.r, light.intensity_w_sr.g, light.intensity_w_sr.b);
+  message.set_radius_mm(light.radius_mm);
+  return message;
+}
+
+PointLight point_from_proto(const v1::PointLight& message) {
+  const v1::Vec3& position = message.position();
+  const v1::Vec3& intensity = message.intensity();
+  return {
+      {position.x(), position.y(), position.z()}, {intensity.x(), intensity.y(), intensity.z()}, message.radius_mm()};
 }
 
 }  // namespace
@@ -57,11 +79,26 @@ v1::Material to_proto(const Material& material) {
   return message;
 }
 
-v1::Light to_proto(const PointLight& light) {
+v1::Light to_proto(const Light& light) {
   v1::Light message;
-  *message.mutable_point()->mutable_position() = to_proto(light.position);
-  *message.mutable_point()->mutable_intensity() = to_proto(light.intensity_w_sr);
+  if (const auto* point = std::get_if<PointLight>(&light)) {
+    *message.mutable_point() = point_to_proto(*point);
+  } else if (const auto* directional = std::get_if<DirectionalLight>(&light)) {
+    *message.mutable_directional()->mutable_direction() = to_proto(directional->direction);
+    *message.mutable_directional()->mutable_irradiance() = to_proto(directional->irradiance);
+  } else {
+    const auto& spot = std::get<SpotLight>(light);
+    *message.mutable_spot()->mutable_point() = point_to_proto(spot.point);
+    *message.mutable_spot()->mutable_direction() = to_proto(spot.direction);
+    message.mutable_spot()->set_inner_angle_deg(spot.inner_angle_deg);
+    message.mutable_spot()->set_outer_angle_deg(spot.outer_angle_deg);
+  }
   return message;
+}
+
+const char* kind_of(const Light& light) {
+  constexpr const char* kKinds[] = {"point", "directional", "spot"};
+  return kKinds[light.index()];
 }
 
 v1::RenderSettings to_proto(const RenderSettings& settings) {
@@ -72,6 +109,8 @@ v1::RenderSettings to_proto(const RenderSettings& settings) {
   message.mutable_paper()->set_face_size_px(settings.paper.face_size_px);
   message.mutable_paper()->set_global_gain(settings.paper.global_gain);
   message.set_exposure_ev(settings.exposure_ev);
+  message.set_quality(static_cast<v1::Quality>(settings.quality));
+  message.set_shadows(static_cast<v1::Shadows>(settings.shadows));
   return message;
 }
 
@@ -105,8 +144,16 @@ MaterialPreset from_proto(const v1::MaterialPreset& message) {
   return {message.name(), from_proto(message.coefficients()), message.source()};
 }
 
-PointLight from_proto(const v1::Light& message) {
-  return {vec3_from_proto(message.point().position()), rgb_from_proto(message.point().intensity())};
+Light from_proto(const v1::Light& message) {
+  if (message.has_directional()) {
+    return DirectionalLight{vec3_from_proto(message.directional().direction()),
+                            rgb_from_proto(message.directional().irradiance())};
+  }
+  if (message.has_spot()) {
+    return SpotLight{point_from_proto(message.spot().point()), vec3_from_proto(message.spot().direction()),
+                     message.spot().inner_angle_deg(), message.spot().outer_angle_deg()};
+  }
+  return point_from_proto(message.point());
 }
 
 SceneInfo from_proto(const v1::Scene& message) {
@@ -135,7 +182,9 @@ MeshInfo from_proto(const v1::Mesh& message) {
 
 RenderSettings from_proto(const v1::RenderSettings& message) {
   RenderSettings settings{.technique = static_cast<Technique>(message.technique()),
+                          .shadows = static_cast<Shadows>(message.shadows()),
                           .exposure_ev = message.exposure_ev()};
+  if (message.quality() != v1::QUALITY_UNSPECIFIED) settings.quality = static_cast<Quality>(message.quality());
   const v1::PaperSettings& paper = message.paper();
   if (paper.terms() != v1::TERMS_UNSPECIFIED) settings.paper.terms = static_cast<Terms>(paper.terms());
   if (paper.kernel_taps() != 0) settings.paper.kernel_taps = paper.kernel_taps();

@@ -20,7 +20,9 @@ v1::Vec3 to_proto(const Rgb& value);
 v1::Coefficients to_proto(const Coefficients& coefficients);
 v1::Camera to_proto(const Camera& camera);
 v1::Material to_proto(const Material& material);
-v1::Light to_proto(const PointLight& light);
+v1::Light to_proto(const Light& light);
+/// The name of the light's kind in an update mask.
+const char* kind_of(const Light& light);
 v1::RenderSettings to_proto(const RenderSettings& settings);
 v1::RenderFrameRequest to_proto(const RenderOptions& options);
 
@@ -29,7 +31,7 @@ Rgb rgb_from_proto(const v1::Vec3& message);
 Coefficients from_proto(const v1::Coefficients& message);
 Material from_proto(const v1::Material& message);
 MaterialPreset from_proto(const v1::MaterialPreset& message);
-PointLight from_proto(const v1::Light& message);
+Light from_proto(const v1::Light& message);
 SceneInfo from_proto(const v1::Scene& message);
 MeshInfo from_proto(const v1::Mesh& message);
 RenderSettings from_proto(const v1::RenderSettings& message);

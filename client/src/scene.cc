@@ -55,7 +55,7 @@ absl::StatusOr<uint64_t> Scene::remove_material(const MaterialHandle& handle) co
   return revision_of(connection_->call(connection_->scene_service(), &SceneStub::DeleteMaterial, request));
 }
 
-absl::StatusOr<LightHandle> Scene::add_light(const PointLight& light) const {
+absl::StatusOr<LightHandle> Scene::add_light(const Light& light) const {
   v1::CreateLightRequest request;
   request.set_parent(name_);
   *request.mutable_light() = to_proto(light);
@@ -65,11 +65,11 @@ absl::StatusOr<LightHandle> Scene::add_light(const PointLight& light) const {
   return LightHandle{response->light().name()};
 }
 
-absl::StatusOr<uint64_t> Scene::update_light(const LightHandle& handle, const PointLight& light) const {
+absl::StatusOr<uint64_t> Scene::update_light(const LightHandle& handle, const Light& light) const {
   v1::UpdateLightRequest request;
   *request.mutable_light() = to_proto(light);
   request.mutable_light()->set_name(handle.name);
-  request.mutable_update_mask()->add_paths("point");
+  request.mutable_update_mask()->add_paths(internal::kind_of(light));
   request.set_request_id(new_request_id());
   return revision_of(connection_->call(connection_->scene_service(), &SceneStub::UpdateLight, request));
 }

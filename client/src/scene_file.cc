@@ -97,7 +97,9 @@ absl::Status convert_materials(const fs::path& path, const SceneFileForm& form, 
 
 absl::Status convert_lights(const fs::path& path, const SceneFileForm& form, SceneFile* scene) {
   for (int i = 0; i < form.lights_size(); ++i) {
-    if (!form.lights(i).has_point()) return invalid(path, fmt::format("lights[{}].point: must be given", i));
+    if (form.lights(i).kind_case() == v1::Light::KIND_NOT_SET) {
+      return invalid(path, fmt::format("lights[{}]: must be point, directional or spot", i));
+    }
     scene->lights.push_back(internal::from_proto(form.lights(i)));
   }
   return absl::OkStatus();

@@ -34,9 +34,11 @@ struct MaterialModel {
   optics::Coefficients coefficients;
 };
 
+/// A whole light, or parts of one that is a point light.
 struct LightPatch {
   std::optional<glm::vec3> position;
   std::optional<glm::vec3> intensity_w_sr;
+  std::optional<LightKind> kind;
 };
 
 struct MeshPatch {
@@ -92,7 +94,7 @@ class SceneStore {
   /// Returns the new scene revision. FAILED_PRECONDITION while a mesh uses it.
   absl::StatusOr<uint64_t> delete_material(const Reference& material);
 
-  absl::StatusOr<Changed<Light>> create_light(const Reference& parent, const PointLight& light);
+  absl::StatusOr<Changed<Light>> create_light(const Reference& parent, const LightKind& light);
   absl::StatusOr<Light> light(const Reference& light) const;
   absl::StatusOr<Changed<Light>> update_light(const Reference& light, const LightPatch& patch);
   absl::StatusOr<uint64_t> delete_light(const Reference& light);

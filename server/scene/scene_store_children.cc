@@ -5,9 +5,14 @@
 namespace diaphane::scene {
 namespace {
 
-void apply(const LightPatch& patch, PointLight& light) {
-  if (patch.position.has_value()) light.position = *patch.position;
-  if (patch.intensity_w_sr.has_value()) light.intensity_w_sr = *patch.intensity_w_sr;
+absl::Status apply(const LightPatch& patch, LightKind& light) {
+  if (patch.kind.has_value()) light = *patch.kind;
+  if (!patch.position.has_value() && !patch.intensity_w_sr.has_value()) return absl::OkStatus();
+  auto* point = std::get_if<PointLight>(&light);
+  if (point == nullptr) return absl::FailedPreconditionError("light.point: the light is of another kind");
+  if (patch.position.has_value()) point->position = *patch.position;
+  if (patch.intensity_w_sr.has_value()) point->intensity_w_sr = *patch.intensity_w_sr;
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -65,7 +70,7 @@ absl::StatusOr<uint64_t> SceneStore::delete_material(const Reference& material) 
   return (*scene)->revision;
 }
 
-absl::StatusOr<Changed<Light>> SceneStore::create_light(const Reference& parent, const PointLight& light) {
+absl::StatusOr<Changed<Light>> SceneStore::create_light(const Reference& parent, const LightKind& light) {
   Light created{{}, light};
   const auto scene = mutate(parent, [&](SceneSnapshot& draft) {
     absl::Status room = check_room_for_one(draft.lights, Collection::kLights, limits_.max_lights_per_scene);
@@ -91,7 +96,7 @@ absl::StatusOr<Changed<Light>> SceneStore::update_light(const Reference& light, 
   const auto scene = mutate_parent(light, Collection::kLights, [&](SceneSnapshot& draft) {
     const auto found = find_child(draft.lights, light.name);
     if (found == draft.lights.end()) return not_found(light, "light");
-    apply(patch, std::get<PointLight>(found->kind));
+    if (absl::Status applied = apply(patch, found->kind); !applied.ok()) return applied;
     changed = {*found, draft.revision};
     return absl::OkStatus();
   });

@@ -42,9 +42,11 @@ struct SpotLight {
   float outer_angle_deg = 30;     ///< from the axis, above 0, up to 90
 };
 
+using LightKind = std::variant<PointLight, DirectionalLight, SpotLight>;
+
 struct Light {
   std::string name;  ///< scenes/{scene}/lights/{light}
-  std::variant<PointLight, DirectionalLight, SpotLight> kind;
+  LightKind kind;
 };
 
 struct Mesh {

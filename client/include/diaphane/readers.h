@@ -13,7 +13,8 @@
 namespace diaphane {
 
 /// Bounds on what a file may make the reader allocate. Counts are over the whole file, instances counted each. As they
-/// are, a small file cannot make more than 1 GiB of itself, and the largest of the usual scans (28 million triangles) fit.
+/// are, a small file cannot make more than 1 GiB of itself, and the largest of the usual scans (28 million triangles)
+/// fit.
 struct ReadLimits {
   uint64_t max_file_bytes = uint64_t{1} << 30;  ///< of the file together with every file that it refers to
   uint64_t max_vertices = 15'000'000;

@@ -12,8 +12,10 @@ namespace diaphane {
 
 enum class Technique {
   kServerDefault = 0,
-  kPaper = 1,   ///< the two-pass cube map, as published
-  kLambert = 2  ///< opaque and matt, for comparison
+  kPaper = 1,     ///< the two-pass cube map, as published
+  kLambert = 2,   ///< opaque and matt, for comparison
+  kIntegral = 3,  ///< the dipole over the whole surface, every frame: the server's default
+  kReference = 4  ///< the same by brute force at every pixel: slow
 };
 
 /// The techniques that can be asked for by name.
@@ -21,7 +23,29 @@ struct NamedTechnique {
   std::string_view name;
   Technique technique;
 };
-inline constexpr NamedTechnique kTechniques[] = {{"paper", Technique::kPaper}, {"lambert", Technique::kLambert}};
+inline constexpr NamedTechnique kTechniques[] = {{"integral", Technique::kIntegral},
+                                                 {"paper", Technique::kPaper},
+                                                 {"reference", Technique::kReference},
+                                                 {"lambert", Technique::kLambert}};
+
+/// Accuracy of the integral against its time.
+enum class Quality { kDraft = 1, kNormal = 2, kFine = 3 };
+
+struct NamedQuality {
+  std::string_view name;
+  Quality quality;
+};
+inline constexpr NamedQuality kQualities[] = {
+    {"draft", Quality::kDraft}, {"normal", Quality::kNormal}, {"fine", Quality::kFine}};
+
+/// Whether meshes hide lights. The default is on for the integral and the reference, off for the others.
+enum class Shadows { kDefault = 0, kOn = 1, kOff = 2 };
+
+struct NamedShadows {
+  std::string_view name;
+  Shadows shadows;
+};
+inline constexpr NamedShadows kShadows[] = {{"on", Shadows::kOn}, {"off", Shadows::kOff}};
 
 /// Which part of the paper technique's answer is shown (its Fig. 9).
 enum class Terms { kBoth = 1, kLocal = 2, kGlobal = 3 };
@@ -41,6 +65,8 @@ struct PaperSettings {
 
 struct RenderSettings {
   Technique technique = Technique::kServerDefault;
+  Quality quality = Quality::kNormal;   ///< of the integral
+  Shadows shadows = Shadows::kDefault;  ///< of the integral and the reference
   PaperSettings paper;
   float exposure_ev = 0;  ///< stops, -32..32; multiplies radiance by 2^exposure_ev before sRGB, never in EXR
 };

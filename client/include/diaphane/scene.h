@@ -52,7 +52,7 @@ struct MaterialInfo {
 
 struct LightInfo {
   LightHandle handle;
-  PointLight light;
+  Light light;
 };
 
 struct MeshInfo {
@@ -97,8 +97,8 @@ class Scene {
   /// Errors: FAILED_PRECONDITION while a mesh uses it.
   absl::StatusOr<uint64_t> remove_material(const MaterialHandle& handle) const;
 
-  absl::StatusOr<LightHandle> add_light(const PointLight& light) const;
-  absl::StatusOr<uint64_t> update_light(const LightHandle& handle, const PointLight& light) const;
+  absl::StatusOr<LightHandle> add_light(const Light& light) const;
+  absl::StatusOr<uint64_t> update_light(const LightHandle& handle, const Light& light) const;
   absl::StatusOr<uint64_t> remove_light(const LightHandle& handle) const;
 
   /// Uploads a mesh, its scene_from_mesh included, in chunks of at most 1 MiB.

@@ -42,7 +42,7 @@ struct SceneFile {
   std::string display_name;
   std::optional<double> millimetres_per_unit;
   std::vector<NamedMaterial> materials;
-  std::vector<PointLight> lights;
+  std::vector<Light> lights;
   std::vector<MeshFile> meshes;
   std::optional<Camera> camera;
   RenderSettings settings;

@@ -60,6 +60,23 @@ struct MaterialPreset {
 struct PointLight {
   Vec3 position{0, 0, 0};       ///< scene units
   Rgb intensity_w_sr{0, 0, 0};  ///< W·sr⁻¹ per channel, each 0..1e12
+  float radius_mm = 0;          ///< 0..1e6; above 0 it casts soft shadows
 };
+
+/// Parallel light from far away.
+struct DirectionalLight {
+  Vec3 direction{0, -1, 0};  ///< in which the light travels; any length but none
+  Rgb irradiance{0, 0, 0};   ///< W·mm⁻² per channel on a surface that faces the light, each 0..1e12
+};
+
+/// A point light within a cone: full within the inner angle, none beyond the outer one, smooth between.
+struct SpotLight {
+  PointLight point;
+  Vec3 direction{0, -1, 0};    ///< axis of the cone; any length but none
+  float inner_angle_deg = 20;  ///< from the axis, 0..90, at most the outer one
+  float outer_angle_deg = 30;  ///< from the axis, above 0, up to 90
+};
+
+using Light = std::variant<PointLight, DirectionalLight, SpotLight>;
 
 }  // namespace diaphane

@@ -1,5 +1,6 @@
 #include "service/convert/frame.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/status.h"
@@ -28,12 +29,45 @@ absl::Status unknown_value(std::string_view field, Enum value) {
 absl::StatusOr<render::Technique> from_proto(v1::Technique technique) {
   switch (technique) {
     case v1::TECHNIQUE_UNSPECIFIED:
+    case v1::TECHNIQUE_INTEGRAL:
+      return render::Technique::kIntegral;
+    case v1::TECHNIQUE_REFERENCE:
+      return render::Technique::kReference;
     case v1::TECHNIQUE_PAPER:
       return render::Technique::kPaper;
     case v1::TECHNIQUE_LAMBERT:
       return render::Technique::kLambert;
     default:
       return unknown_value("settings.technique", technique);
+  }
+}
+
+absl::StatusOr<diffusion::Quality> from_proto(v1::Quality quality) {
+  switch (quality) {
+    case v1::QUALITY_DRAFT:
+      return diffusion::Quality::kDraft;
+    case v1::QUALITY_UNSPECIFIED:
+    case v1::QUALITY_NORMAL:
+      return diffusion::Quality::kNormal;
+    case v1::QUALITY_FINE:
+      return diffusion::Quality::kFine;
+    default:
+      return unknown_value("settings.quality", quality);
+  }
+}
+
+absl::StatusOr<bool> shadows_from_proto(v1::Shadows shadows, render::Technique technique) {
+  const bool available = technique == render::Technique::kIntegral || technique == render::Technique::kReference;
+  switch (shadows) {
+    case v1::SHADOWS_UNSPECIFIED:
+      return available;
+    case v1::SHADOWS_OFF:
+      return false;
+    case v1::SHADOWS_ON:
+      if (available) return true;
+      return base::invalid_field("settings.shadows", "off with the paper and lambert techniques", "on");
+    default:
+      return unknown_value("settings.shadows", shadows);
   }
 }
 
@@ -102,12 +136,18 @@ absl::StatusOr<scene::Camera> from_proto(const v1::Camera& message) {
 absl::StatusOr<render::RenderSettings> from_proto(const v1::RenderSettings& message) {
   const absl::StatusOr<render::Technique> technique = from_proto(message.technique());
   if (!technique.ok()) return technique.status();
+  const absl::StatusOr<diffusion::Quality> quality = from_proto(message.quality());
+  if (!quality.ok()) return quality.status();
+  const absl::StatusOr<bool> shadows = shadows_from_proto(message.shadows(), *technique);
+  if (!shadows.ok()) return shadows.status();
   const absl::StatusOr<render::PaperSettings> paper = from_proto(message.paper());
   if (!paper.ok()) return paper.status();
   absl::Status exposure = check_range("settings.exposure_ev", message.exposure_ev(), -32, 32);
   if (!exposure.ok()) return exposure;
   render::RenderSettings settings;
   settings.technique = *technique;
+  settings.quality = *quality;
+  settings.shadows = *shadows;
   settings.paper = *paper;
   settings.exposure_ev = message.exposure_ev();
   return settings;
@@ -153,6 +193,10 @@ absl::StatusOr<session::FrameTask> from_proto(const v1::RenderFrameRequest& mess
   if (absl::Status size = check_size(message.size(), max_pixels); !size.ok()) return size;
   const absl::StatusOr<render::RenderSettings> settings = from_proto(message.settings());
   if (!settings.ok()) return settings.status();
+  if (settings->technique == render::Technique::kReference) {
+    absl::Status size = check_size(message.size(), std::min(max_pixels, kMaxReferencePixels));
+    if (!size.ok()) return size;
+  }
   const absl::StatusOr<encode::Encoding> encoding = from_proto(message.encoding());
   if (!encoding.ok()) return encoding.status();
   session::FrameTask task;

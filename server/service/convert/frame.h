@@ -13,6 +13,9 @@ absl::StatusOr<scene::Camera> from_proto(const v1::Camera& message);
 absl::StatusOr<render::RenderSettings> from_proto(const v1::RenderSettings& message);
 absl::StatusOr<encode::Encoding> from_proto(const v1::Encoding& message);
 
+/// Of a frame by the reference technique, which takes seconds as it is.
+inline constexpr uint64_t kMaxReferencePixels = uint64_t{1} << 20;
+
 /// OK when each side is 1..8192 and the product at most `max_pixels`.
 absl::Status check_size(const v1::Size& message, uint64_t max_pixels);
 

@@ -8,9 +8,10 @@
 
 namespace diaphane::service {
 
-absl::StatusOr<scene::PointLight> from_proto(const v1::Light& message);
+absl::StatusOr<scene::LightKind> from_proto(const v1::Light& message);
 
-/// The values of `message` that `mask` names: point, or point.position, point.intensity.
+/// The values of `message` that `mask` names: the whole light by the name of its kind, or point.position,
+/// point.intensity.
 absl::StatusOr<scene::LightPatch> from_proto(const v1::Light& message, const google::protobuf::FieldMask& mask);
 
 void to_proto(const scene::Light& light, v1::Light& message);

@@ -1,5 +1,7 @@
 #include "service/convert/server_info.h"
 
+#include "service/convert/frame.h"
+
 namespace diaphane::service {
 
 void to_proto(const render::RendererInfo& renderer, v1::ServerInfo& message) {
@@ -9,7 +11,7 @@ void to_proto(const render::RendererInfo& renderer, v1::ServerInfo& message) {
   message.set_software_rendering(renderer.software);
   message.set_context_reason(renderer.reason);
   for (const char* format : {"png", "jpeg", "exr"}) message.add_image_formats(format);
-  for (const char* technique : {"paper", "lambert"}) message.add_techniques(technique);
+  for (const char* technique : {"integral", "paper", "reference", "lambert"}) message.add_techniques(technique);
 }
 
 void to_proto(const ServiceLimits& limits, v1::Limits& message) {
@@ -23,6 +25,7 @@ void to_proto(const ServiceLimits& limits, v1::Limits& message) {
   message.set_max_mesh_bytes(limits.scene.max_mesh_bytes);
   message.set_max_chunk_bytes(kMaxChunkBytes);
   message.set_max_queued_frames(limits.max_queued_frames);
+  message.set_max_reference_pixels(kMaxReferencePixels);
 }
 
 }  // namespace diaphane::service

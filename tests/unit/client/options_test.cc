@@ -71,9 +71,9 @@ TEST_F(RenderOptionsTest, FillTheArguments) {
   EXPECT_EQ(arguments_.terms, Terms::kGlobal);
   EXPECT_EQ(arguments_.kernel_taps, 3);
   EXPECT_EQ(arguments_.eye, (Vec3{-1, 0, 0}));
-  ASSERT_EQ(arguments_.point_lights.size(), 2);
-  EXPECT_EQ(arguments_.point_lights[0].intensity_w_sr, (Rgb{2, 3, 4}));
-  EXPECT_EQ(arguments_.point_lights[1].position, (Vec3{-5, 0, 0}));
+  ASSERT_EQ(arguments_.lights.size(), 2);
+  EXPECT_EQ(std::get<PointLight>(arguments_.lights[0]).intensity_w_sr, (Rgb{2, 3, 4}));
+  EXPECT_EQ(std::get<PointLight>(arguments_.lights[1]).position, (Vec3{-5, 0, 0}));
   EXPECT_EQ(arguments_.height_mm, 20);
 }
 

@@ -59,8 +59,8 @@ TEST_F(SceneFileTest, ReadsEverythingThatAFileMaySay) {
   EXPECT_EQ(free.reduced_scattering_mm, (Rgb{1, 2, 3}));
   EXPECT_FLOAT_EQ(free.refractive_index, 1.3f);
   ASSERT_EQ(scene->lights.size(), 1);
-  EXPECT_EQ(scene->lights[0].position, (Vec3{0, 4, 0}));
-  EXPECT_EQ(scene->lights[0].intensity_w_sr, (Rgb{9, 8, 7}));
+  EXPECT_EQ(std::get<PointLight>(scene->lights[0]).position, (Vec3{0, 4, 0}));
+  EXPECT_EQ(std::get<PointLight>(scene->lights[0]).intensity_w_sr, (Rgb{9, 8, 7}));
   ASSERT_EQ(scene->meshes.size(), 2);
   EXPECT_EQ(scene->meshes[0].path, folder_ / "sub/x.ply");
   EXPECT_EQ(scene->meshes[0].material, 1);

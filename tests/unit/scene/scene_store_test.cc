@@ -58,7 +58,7 @@ TEST_F(SceneStoreTest, PatchesOnlyWhatIsGiven) {
   const SnapshotPtr renamed = *store_.update_scene({"scene.name", scene}, {"head", std::nullopt});
   EXPECT_EQ(renamed->display_name, "head");
   EXPECT_EQ(renamed->millimetres_per_unit, 10);
-  const auto light = *store_.create_light({"parent", scene}, {{1, 2, 3}, {4, 5, 6}});
+  const auto light = *store_.create_light({"parent", scene}, PointLight{{1, 2, 3}, {4, 5, 6}});
   const auto moved = *store_.update_light({"light.name", light.value.name}, {glm::vec3(7), std::nullopt});
   EXPECT_EQ(std::get<PointLight>(moved.value.kind).position, glm::vec3(7));
   EXPECT_EQ(std::get<PointLight>(moved.value.kind).intensity_w_sr, glm::vec3(4, 5, 6));

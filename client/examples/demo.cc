@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 
 constexpr double kHeightMm = 10;   // some twelve mean free paths of the wax
 constexpr float kRadiance = 0.6f;  // W·mm⁻²·sr⁻¹ of a white wall as far from the light as the middle of the body
+constexpr float kExposureEv = 3.5f;  // what comes through the body is far darker than the wall
 constexpr float kGlobalGain = 30;  // the paper's global term is dark beyond a few mean free paths; this shows its shape
 
 struct Options {
@@ -144,6 +145,7 @@ absl::Status run(const Options& options) {
   if (const auto handle = scene->add_light(light); !handle.ok()) return handle.status();
   const absl::StatusOr<MeshHandle> body = scene->add_mesh(mesh, {.material = *wax});
   if (!body.ok()) return body.status();
+  render.settings.exposure_ev = kExposureEv;
   RenderOptions paper = render;
   paper.settings.technique = Technique::kPaper;
   paper.settings.paper.global_gain = kGlobalGain;

@@ -102,6 +102,11 @@ absl::Status Server::listen(const ServerOptions& options) {
   if (server_ == nullptr || (address.unix_path.empty() && port == 0)) {
     return absl::UnavailableError(fmt::format("cannot listen on {}", address.text()));
   }
+  // The health service knows no service but "" by itself.
+  for (const char* service : {v1::SceneService::service_full_name(), v1::RenderService::service_full_name(),
+                              v1::ServerService::service_full_name()}) {
+    server_->GetHealthCheckService()->SetServingStatus(service, true);
+  }
   address.port = port;
   address_ = address.text();
   return absl::OkStatus();

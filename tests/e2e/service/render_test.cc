@@ -104,25 +104,25 @@ TEST_F(RenderTest, RefusesFramesPastTheQueue) {
   scene_ = create_scene().name();
   create_mesh(scene_);
   control_->hold();
-  Context contexts[2];
-  v1::RenderFrameResponse responses[2];
-  std::thread drawn([&] { EXPECT_TRUE(frames_->RenderFrame(&contexts[0], frame_of(scene_), &responses[0]).ok()); });
+  v1::RenderFrameResponse drawn_response;
+  std::thread drawn([&] { EXPECT_TRUE(render(frame_of(scene_), &drawn_response).ok()); });
   control_->wait_for_started(1);
-  // One of the next two waits, the other is refused.
+  // There is room for one of these two; the other one's refusal lets the first go on.
   grpc::Status statuses[2];
-  std::thread waiting([&] { statuses[0] = frames_->RenderFrame(&contexts[1], frame_of(scene_), &responses[1]); });
-  v1::RenderFrameResponse response;
-  do {
-    Context context;
-    context.set_deadline(std::chrono::system_clock::now() + std::chrono::milliseconds(100));
-    statuses[1] = frames_->RenderFrame(&context, frame_of(scene_), &response);
-  } while (statuses[1].error_code() == grpc::StatusCode::DEADLINE_EXCEEDED);
-  EXPECT_EQ(statuses[1].error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
-  EXPECT_EQ(error_info(statuses[1]).metadata().at("field"), "queued_frames");
-  control_->release();
+  std::vector<std::thread> callers;
+  for (grpc::Status& status : statuses) {
+    callers.emplace_back([&] {
+      v1::RenderFrameResponse response;
+      status = render(frame_of(scene_), &response);
+      control_->release();
+    });
+  }
+  for (std::thread& caller : callers) caller.join();
   drawn.join();
-  waiting.join();
-  EXPECT_TRUE(statuses[0].ok() || statuses[0].error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED);
+  if (statuses[0].ok()) std::swap(statuses[0], statuses[1]);
+  EXPECT_TRUE(statuses[1].ok());
+  EXPECT_EQ(statuses[0].error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(error_info(statuses[0]).metadata().at("field"), "queued_frames");
 }
 
 TEST_F(RenderTest, SurvivesARendererWithoutMemory) {

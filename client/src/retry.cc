@@ -29,6 +29,11 @@ milliseconds jittered(milliseconds duration) {
   return milliseconds(static_cast<int64_t>(duration.count() * std::uniform_real_distribution(0.7, 1.0)(generator)));
 }
 
+// ABORTED: the server is still at an earlier attempt, whose connection broke.
+bool may_repeat(grpc::StatusCode code) {
+  return code == grpc::StatusCode::UNAVAILABLE || code == grpc::StatusCode::ABORTED;
+}
+
 }  // namespace
 
 absl::Status run_with_retries(const RetryPolicy& policy,
@@ -48,7 +53,7 @@ absl::Status run_with_retries(const RetryPolicy& policy,
     }
     // An attempt that still waits for a connection when the time is over does not know why there is none.
     if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED && !unavailable.ok()) return to_absl(unavailable);
-    if (status.error_code() != grpc::StatusCode::UNAVAILABLE || Clock::now() >= last_retry) return to_absl(status);
+    if (!may_repeat(status.error_code()) || Clock::now() >= last_retry) return to_absl(status);
     unavailable = status;
     if (!pause(jittered(wait), policy.stop)) return absl::CancelledError("stopped");
     wait = std::min(2 * wait, kLongestPause);

@@ -13,7 +13,7 @@ namespace diaphane::internal {
 
 struct RetryPolicy {
   std::chrono::milliseconds call_timeout;         ///< for all attempts together
-  std::chrono::milliseconds unavailable_timeout;  ///< for how long UNAVAILABLE is tried again
+  std::chrono::milliseconds unavailable_timeout;  ///< for how long UNAVAILABLE and ABORTED are tried again
   std::stop_token stop;                           ///< cancels the attempt, or the pause, in progress
 };
 

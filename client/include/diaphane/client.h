@@ -50,7 +50,7 @@ struct ServerInfo {
 
 struct SceneOptions {
   std::string display_name;         ///< free text, at most 256 bytes
-  double millimetres_per_unit = 1;  ///< size of one scene unit, in (0, 1e6]
+  double millimetres_per_unit = 1;  ///< size of one scene unit, 1e-6..1e6
 };
 
 /// A connection to one server. A copy is another handle to the same connection; all members may be called from any

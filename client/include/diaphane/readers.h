@@ -13,7 +13,8 @@
 namespace diaphane {
 
 /// Bounds on what a file may make the reader allocate. Counts are over the whole file, instances counted each. As they
-/// are, a small file cannot make more than 1 GiB of itself, and the largest of the usual scans (28 million triangles) fit.
+/// are, a small file cannot make more than 1 GiB of itself, and the largest of the usual scans (28 million triangles)
+/// fit.
 struct ReadLimits {
   uint64_t max_file_bytes = uint64_t{1} << 30;  ///< of the file together with every file that it refers to
   uint64_t max_vertices = 15'000'000;
@@ -40,9 +41,9 @@ struct LoadedFile {
 ///   never.
 /// - Normals come as the file has them, of any length; (0, 0, 0) where it has none for that vertex.
 ///
-/// Errors, each one line "PATH: what, where, range": NOT_FOUND no such file; PERMISSION_DENIED it cannot be opened;
-/// INVALID_ARGUMENT malformed (non-finite positions, indices out of range, truncated, ...) or nothing to render;
-/// RESOURCE_EXHAUSTED past one of `limits`; UNIMPLEMENTED a feature that is named, such as Draco compression.
+/// Errors, each one line "PATH: what, where, range": kNotFound no such file; kPermissionDenied it cannot be opened;
+/// kInvalidArgument malformed (non-finite positions, indices out of range, truncated, ...) or nothing to render;
+/// kResourceExhausted past one of `limits`; kUnimplemented a feature that is named, such as Draco compression.
 /// Thread-safe.
 absl::StatusOr<LoadedFile> read_mesh_file(const std::filesystem::path& path, const ReadLimits& limits = {});
 

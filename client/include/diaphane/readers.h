@@ -41,9 +41,9 @@ struct LoadedFile {
 ///   never.
 /// - Normals come as the file has them, of any length; (0, 0, 0) where it has none for that vertex.
 ///
-/// Errors, each one line "PATH: what, where, range": NOT_FOUND no such file; PERMISSION_DENIED it cannot be opened;
-/// INVALID_ARGUMENT malformed (non-finite positions, indices out of range, truncated, ...) or nothing to render;
-/// RESOURCE_EXHAUSTED past one of `limits`; UNIMPLEMENTED a feature that is named, such as Draco compression.
+/// Errors, each one line "PATH: what, where, range": kNotFound no such file; kPermissionDenied it cannot be opened;
+/// kInvalidArgument malformed (non-finite positions, indices out of range, truncated, ...) or nothing to render;
+/// kResourceExhausted past one of `limits`; kUnimplemented a feature that is named, such as Draco compression.
 /// Thread-safe.
 absl::StatusOr<LoadedFile> read_mesh_file(const std::filesystem::path& path, const ReadLimits& limits = {});
 

@@ -8,8 +8,8 @@
 
 namespace diaphane::readers {
 
-/// The bytes of the regular file at `path`. Errors, in the name of `source`: NOT_FOUND, PERMISSION_DENIED,
-/// INVALID_ARGUMENT when it is no regular file, RESOURCE_EXHAUSTED past `max_bytes` (nothing was allocated then).
+/// The bytes of the regular file at `path`. Errors, in the name of `source`: kNotFound, kPermissionDenied,
+/// kInvalidArgument when it is no regular file, kResourceExhausted past `max_bytes` (nothing was allocated then).
 absl::StatusOr<std::string> read_whole_file(const std::filesystem::path& path, uint64_t max_bytes,
                                             const Source& source);
 

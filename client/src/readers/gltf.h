@@ -11,7 +11,7 @@ namespace diaphane::readers {
 /// Reads the default scene (or the first, or every node where there is no scene): a mesh per primitive and node, with
 /// the node's transform. Triangles, strips and fans; quantised, normalised and sparse accessors; default morph weights.
 /// Skins keep their rest pose; materials, images, cameras and animations are not looked at. External buffers are opened
-/// inside source.folder only. UNIMPLEMENTED: glTF 1, Draco, meshopt and other required extensions, by name.
+/// inside source.folder only. kUnimplemented: glTF 1, Draco, meshopt and other required extensions, by name.
 /// Errors: read_mesh_file().
 absl::StatusOr<LoadedFile> read_gltf(std::string bytes, const Source& source);
 

@@ -21,7 +21,7 @@ class GltfAccessors {
  public:
   GltfAccessors(const tinygltf::Model& model, const GltfBuffers& buffers, const Source& source);
 
-  /// Elements of `accessor`. INVALID_ARGUMENT where there is no such accessor.
+  /// Elements of `accessor`. kInvalidArgument where there is no such accessor.
   absl::StatusOr<uint64_t> count(int accessor) const;
 
   /// `count` VEC3 of floats, or of 8 or 16 bit integers, normalised or not (KHR_mesh_quantization). Where

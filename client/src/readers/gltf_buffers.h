@@ -15,8 +15,8 @@ namespace diaphane::readers {
 class GltfBuffers {
  public:
   /// Loads all: the GLB chunk, data URIs, and files inside source.folder (relative, no "..", no link that leads out).
-  /// INVALID_ARGUMENT a buffer shorter than its byteLength, or a URI that may not be followed; NOT_FOUND a file that is
-  /// missing; RESOURCE_EXHAUSTED more than limits.max_file_bytes in all; UNIMPLEMENTED meshopt's buffers without data.
+  /// kInvalidArgument a buffer shorter than its byteLength, or a URI that may not be followed; kNotFound a file that is
+  /// missing; kResourceExhausted more than limits.max_file_bytes in all; kUnimplemented meshopt's buffers without data.
   static absl::StatusOr<GltfBuffers> load(GltfDocument& document, const Source& source);
 
   size_t size() const { return views_.size(); }

@@ -24,8 +24,8 @@ struct GltfDocument {
   std::string_view binary_chunk() const { return std::string_view(bytes).substr(chunk_offset, chunk_size); }
 };
 
-/// Parses either kind of file. INVALID_ARGUMENT malformed; RESOURCE_EXHAUSTED too much JSON or too many nodes;
-/// UNIMPLEMENTED glTF 1 and extensions that the file requires and the reader does not know.
+/// Parses either kind of file. kInvalidArgument malformed; kResourceExhausted too much JSON or too many nodes;
+/// kUnimplemented glTF 1 and extensions that the file requires and the reader does not know.
 absl::StatusOr<GltfDocument> parse_gltf_document(std::string bytes, const Source& source);
 
 }  // namespace diaphane::readers

@@ -19,7 +19,7 @@ struct GltfInstance {
 
 /// The meshes of the default scene, else of the first, else of all nodes; every mesh once, as it is, where no node of
 /// the file has one. Instances that a transform flattens (determinant 0) are left out with a line in `warnings`.
-/// INVALID_ARGUMENT: a reference to nothing, a node that is reached twice (a cycle, or two parents), a transform that
+/// kInvalidArgument: a reference to nothing, a node that is reached twice (a cycle, or two parents), a transform that
 /// is malformed or not finite.
 absl::StatusOr<std::vector<GltfInstance>> place_gltf_meshes(const tinygltf::Model& model, const Source& source,
                                                             std::vector<std::string>& warnings);

@@ -59,7 +59,6 @@ void MeshBuilder::set_normal(uint32_t vertex, const Double3& normal) {
 }
 
 absl::Status MeshBuilder::add_polygon(std::span<const int64_t> corners, Place place) {
-  if (corners.size() > kMostCorners) return source_.over_limit("corners of a polygon", corners.size(), kMostCorners);
   corners_.clear();
   for (int64_t corner : corners) {
     if (corner < 0 || static_cast<uint64_t>(corner) >= mesh_.positions.size()) {
@@ -83,6 +82,10 @@ absl::Status MeshBuilder::add_polygon(std::span<const int64_t> corners, Place pl
     if (!status.ok()) return status;
   }
   return absl::OkStatus();
+}
+
+absl::Status MeshBuilder::check_corner_count(uint64_t count) const {
+  return count <= kMostCorners ? absl::OkStatus() : source_.over_limit("corners of a polygon", count, kMostCorners);
 }
 
 absl::Status MeshBuilder::add_triangle(uint32_t a, uint32_t b, uint32_t c) {

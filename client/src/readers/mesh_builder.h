@@ -23,7 +23,7 @@ class MeshBuilder {
 
   explicit MeshBuilder(const Source& source) : source_(source) {}
 
-  /// Makes room for counts that the file's size has been checked against. RESOURCE_EXHAUSTED past the limits.
+  /// Makes room for counts that the file's size has been checked against. kResourceExhausted past the limits.
   absl::Status expect(uint64_t vertices, uint64_t triangles);
 
   /// Positions beyond the range of float are refused as the infinite ones are.
@@ -38,15 +38,19 @@ class MeshBuilder {
   /// A polygon of any number of corners; fewer than three different ones in a row and it is dropped.
   absl::Status add_polygon(std::span<const int64_t> corners, Place place);
 
+  /// Whether a polygon may have `count` corners; asked before they are read, because a file may name one vertex for
+  /// ever.
+  absl::Status check_corner_count(uint64_t count) const;
+
   uint64_t vertex_count() const { return mesh_.positions.size(); }
 
-  /// Ends the mesh so far under `name`, unless it has no triangle. RESOURCE_EXHAUSTED past limits.max_nodes meshes.
+  /// Ends the mesh so far under `name`, unless it has no triangle. kResourceExhausted past limits.max_nodes meshes.
   absl::Status end_mesh(std::string_view name);
 
   /// A line for whoever asked for the file.
   void warn(std::string line) { file_.warnings.push_back(std::move(line)); }
 
-  /// The meshes that were ended. INVALID_ARGUMENT when there is none: nothing to render.
+  /// The meshes that were ended. kInvalidArgument when there is none: nothing to render.
   absl::StatusOr<LoadedFile> finish();
 
  private:

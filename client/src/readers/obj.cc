@@ -118,6 +118,7 @@ class ObjReader {
         normal = -1;
       }
       if (status.ok() && normal >= 0) status = vertex_with_normal(static_cast<int32_t>(normal), position);
+      if (status.ok()) status = builder_.check_corner_count(corners_.size() + 1);
       if (!status.ok()) return status;
       corners_.push_back(position);
     }

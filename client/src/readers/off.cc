@@ -130,7 +130,8 @@ class OffReader {
     std::string_view rest;
     if (!next_line(rest)) return truncated("its last face");
     uint64_t count = 0;
-    const absl::Status status = read_count(rest, "corners", true, count);
+    absl::Status status = read_count(rest, "corners", true, count);
+    if (status.ok()) status = builder_.check_corner_count(count);
     if (!status.ok()) return status;
     corners_.clear();
     for (uint64_t i = 0; i < count; ++i) {

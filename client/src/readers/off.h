@@ -12,7 +12,8 @@ namespace diaphane::readers {
 bool looks_like_off(std::string_view text);
 
 /// Reads positions, normals (NOFF) and faces; one mesh. One vertex or face per line. Colours and texture coordinates
-/// are passed over. UNIMPLEMENTED: 4OFF and nOFF (points of other dimensions) and binary OFF. Errors: read_mesh_file().
+/// are passed over. kUnimplemented: 4OFF and nOFF (points of other dimensions) and binary OFF. Errors:
+/// read_mesh_file().
 absl::StatusOr<LoadedFile> read_off(std::string_view text, const Source& source);
 
 }  // namespace diaphane::readers

@@ -144,9 +144,7 @@ class PlyReader {
     }
     const auto size = static_cast<uint64_t>(count);
     list_.clear();
-    if (wanted && size > 2 * source_.limits.max_triangles) {
-      return source_.over_limit("indices in a list", size, 2 * source_.limits.max_triangles);
-    }
+    if (wanted && size > longest_list_) return source_.over_limit("indices in a list", size, longest_list_);
     if (wanted) list_.reserve(size);
     for (uint64_t i = 0; i < size; ++i) {
       double value = 0;
@@ -210,6 +208,7 @@ class PlyReader {
       }
       if (!has_vertices_) return source_.unsupported("PLY with faces before its vertices");
     }
+    longest_list_ = strips ? 2 * source_.limits.max_triangles : MeshBuilder::kMostCorners;
     for (uint64_t i = 0; i < element.count; ++i) {
       const Place place = values_.next_place();
       absl::Status status = read_row(element, indices);
@@ -245,6 +244,7 @@ class PlyReader {
   MeshBuilder builder_;
   std::vector<double> row_;
   std::vector<int64_t> list_;
+  uint64_t longest_list_ = 0;
   bool has_vertices_ = false;
 };
 

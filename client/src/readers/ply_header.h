@@ -41,7 +41,7 @@ struct PlyHeader {
 };
 
 /// Parses the header of `bytes`, which outlive the result. Every element's count is checked to fit into the bytes that
-/// follow the header. INVALID_ARGUMENT otherwise, naming the line.
+/// follow the header. kInvalidArgument otherwise, naming the line.
 absl::StatusOr<PlyHeader> parse_ply_header(std::string_view bytes, const Source& source);
 
 }  // namespace diaphane::readers

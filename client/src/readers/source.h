@@ -23,14 +23,14 @@ struct Source {
   std::filesystem::path folder;  ///< where files that it refers to may lie; empty: it may refer to none
   ReadLimits limits;
 
-  /// INVALID_ARGUMENT "NAME: WHAT, WHERE, RANGE"; empty parts are left out, and control characters replaced.
+  /// kInvalidArgument "NAME: WHAT, WHERE, RANGE"; empty parts are left out, and control characters replaced.
   absl::Status malformed(std::string_view what, std::string_view where = {}, std::string_view range = {}) const;
   absl::Status malformed(std::string_view what, Place where, std::string_view range = {}) const;
 
-  /// RESOURCE_EXHAUSTED "NAME: `count` WHAT, must be at most `limit`".
+  /// kResourceExhausted "NAME: `count` WHAT, must be at most `limit`".
   absl::Status over_limit(std::string_view what, uint64_t count, uint64_t limit) const;
 
-  /// UNIMPLEMENTED "NAME: FEATURE cannot be read, WHERE".
+  /// kUnimplemented "NAME: FEATURE cannot be read, WHERE".
   absl::Status unsupported(std::string_view feature, std::string_view where = {}) const;
 
   /// The same three parts under any code.

@@ -128,7 +128,8 @@ class StlReader {
         return source_.malformed(fmt::format("vertex coordinate {}", in_quotes(token)), place, "must be three numbers");
       }
     }
-    return add_corner(position, place);
+    const absl::Status status = builder_.check_corner_count(corners_.size() + 1);
+    return status.ok() ? add_corner(position, place) : status;
   }
 
   static std::string_view trimmed(std::string_view text) {

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "diffusion/four.h"
 #include "diffusion/gather.h"
 #include "diffusion/kernel_table.h"
 #include "diffusion/node_tree.h"
@@ -18,7 +19,7 @@ namespace {
 
 constexpr uint32_t kChunk = NodeTree::kChunkSlots;
 
-/// What the vertices of a triangle sum up.
+/// What the vertices of a triangle sum up; eight floats.
 struct Face {
   glm::vec3 area_vector_mm2{0};
   float area_mm2 = 0;
@@ -50,9 +51,12 @@ Openings openings_of(Quality quality, const optics::Coefficients& material) {
   const glm::vec3 absorption = dipole.effective_transport_mm * dipole.mean_free_path_mm;
   const bool absorbing = std::max({absorption.x, absorption.y, absorption.z}) > kAbsorbing;
   switch (quality) {
-    case Quality::kDraft: return absorbing ? Openings{0.40f, 0.60f} : Openings{0.50f, 0.65f};
-    case Quality::kNormal: return absorbing ? Openings{0.28f, 0.45f} : Openings{0.36f, 0.52f};
-    case Quality::kFine: break;
+    case Quality::kDraft:
+      return absorbing ? Openings{0.34f, 0.50f} : Openings{0.42f, 0.60f};
+    case Quality::kNormal:
+      return absorbing ? Openings{0.28f, 0.45f} : Openings{0.36f, 0.52f};
+    case Quality::kFine:
+      break;
   }
   return absorbing ? Openings{0.24f, 0.40f} : Openings{0.28f, 0.45f};
 }
@@ -110,16 +114,16 @@ void DipoleIntegral::update_positions(std::span<const glm::vec3> positions_mm, s
   s.for_each(s.tree.chunk_count(), [&](uint32_t chunk) {
     const uint32_t end = std::min((chunk + 1) * kChunk, surface.slot_count);
     for (uint32_t slot = chunk * kChunk; slot < end; ++slot) {
-      Face sum;
+      Four low{}, high{};
       for (uint32_t k = surface.first_corner[slot]; k < surface.first_corner[slot + 1]; ++k) {
-        const Face& face = s.faces[surface.triangle_of_corner[k]];
-        sum.area_vector_mm2 += face.area_vector_mm2;
-        sum.area_mm2 += face.area_mm2;
-        sum.centroid_times_area += face.centroid_times_area;
+        const auto* face = reinterpret_cast<const float*>(&s.faces[surface.triangle_of_corner[k]]);
+        low += load4(face);
+        high += load4(face + 4);
       }
+      const Face sum{{low[0], low[1], low[2]}, low[3], {high[0], high[1], high[2]}, 0};
       const uint32_t vertex = surface.vertex_of_slot[slot];
       const glm::vec3& position = positions_mm[vertex];
-      s.tree.places[slot] = {position, sum.area_mm2 / 3};
+      s.tree.places[slot] = {position, sum.area_mm2 / 3, sum.area_vector_mm2 / 3.0f};
       s.tree.sources[slot].position_mm =
           sum.area_mm2 > 0 ? 0.5f * (position + sum.centroid_times_area / sum.area_mm2) : position;
       if (normals.empty()) continue;
@@ -128,7 +132,7 @@ void DipoleIntegral::update_positions(std::span<const glm::vec3> positions_mm, s
     }
     if (end == surface.slot_count) {
       for (uint32_t slot = end; slot < s.tree.places.size(); ++slot) {
-        s.tree.places[slot] = {s.tree.places[end - 1].position_mm, 0};
+        s.tree.places[slot] = {s.tree.places[end - 1].position_mm};
         s.tree.sources[slot].position_mm = s.tree.sources[end - 1].position_mm;
       }
     }
@@ -217,8 +221,12 @@ void DipoleIntegral::gather(Quality quality, std::span<glm::vec3> radiosity) {
 void DipoleIntegral::gather(const Openings& openings, std::span<glm::vec3> radiosity) {
   prepare_tables();
   State& s = *state_;
-  const GatherInput input{&s.tree, &s.kernels, s.irradiance.data(), s.topology->vertex_of_slot.data(), radiosity.data(),
-                    {openings.groups, openings.vertices, s.coloured}};
+  const GatherInput input{&s.tree,
+                          &s.kernels,
+                          s.irradiance.data(),
+                          s.topology->vertex_of_slot.data(),
+                          radiosity.data(),
+                          {openings.groups, openings.vertices, s.coloured}};
   const size_t jobs = collect_jobs(input, s.scratch.local(), s.jobs);
   s.for_each(static_cast<uint32_t>(jobs), [&](uint32_t job) { run_job(input, s.scratch.local(), s.jobs[job]); });
   for (const uint32_t v : s.topology->twins) {

@@ -14,8 +14,8 @@ namespace diaphane::diffusion {
 /// Accuracy against time; docs/integral.md has both, measured.
 enum class Quality { kDraft, kNormal, kFine };
 
-/// How wide a group of vertices may look, radius over distance, and still be taken as one: between groups, and from a group
-/// to single vertices. Smaller is slower and more accurate.
+/// How wide a group of vertices may look, radius over distance, and still be taken as one: between groups, and from a
+/// group to single vertices. Smaller is slower and more accurate.
 struct Openings {
   float groups;
   float vertices;
@@ -24,7 +24,8 @@ struct Openings {
 /// What a quality means for a material.
 Openings openings_of(Quality quality, const optics::Coefficients& material);
 
-/// One body. Its stages, in the order in which they feed each other; a caller leaves out those whose inputs did not change:
+/// One body. Its stages, in the order in which they feed each other; a caller leaves out those whose inputs did not
+/// change:
 ///
 ///     update_positions → refit_geometry ─┐
 ///     update_positions → set_irradiance → refit_flux ─┼→ gather
@@ -38,15 +39,16 @@ class DipoleIntegral {
   explicit DipoleIntegral(std::shared_ptr<const SurfaceTopology> topology, int threads = 0);
   ~DipoleIntegral();
 
-  /// Areas and places of the vertices. `positions_mm` [vertex_count], finite within ±1e15 mm. Where `normals` is not empty,
+  /// Areas and places of the vertices. `positions_mm` [vertex_count], within ±1e7 mm (fourth powers of distances must
+  /// stay finite). Where `normals` is not empty,
   /// [vertex_count], it gets area-weighted unit normals, equal at all vertices of a weld; +z where a weld has no area.
   void update_positions(std::span<const glm::vec3> positions_mm, std::span<glm::vec3> normals = {});
 
   /// Fits the tree to the places.
   void refit_geometry();
 
-  /// Irradiance E ≥ 0 that enters the body, RGB, W·mm⁻²: at the centroids of topology().triangles (in that order, with the
-  /// renormalised mean of the corners' normals), and at the vertices for the local term.
+  /// Irradiance E ≥ 0 that enters the body, RGB, W·mm⁻²: at the centroids of topology().triangles (in that order, with
+  /// the renormalised mean of the corners' normals), and at the vertices for the local term.
   void set_irradiance(std::span<const glm::vec3> at_triangles, std::span<const glm::vec3> at_vertices);
 
   /// Fits the tree to the flux.

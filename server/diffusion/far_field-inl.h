@@ -27,9 +27,8 @@ HWY_INLINE Pack pack_children(const NodeTree& tree, uint32_t level, const uint32
   const size_t count = 4 * near_count;
   const size_t stride = (count + lanes - 1) / lanes * lanes;
   const uint32_t fields = coloured ? kNodeFields : uint32_t{kDipole};
-  // A compressing store may write a whole vector past its end.
-  if (scratch.near.size() < stride + lanes) {
-    const size_t columns = 2 * (stride + lanes);
+  if (scratch.near.size() < stride) {
+    const size_t columns = 2 * stride;
     scratch.near.resize(columns);
     scratch.pack_nodes.resize(columns);
     scratch.pack.resize(columns * kNodeFields);
@@ -48,7 +47,16 @@ struct Receiver {
   glm::vec3 centre_mm;
   float spread2;
   float radius;
+  float area;
+  glm::vec3 facing;  ///< Σ area vectors
+  float spacing;     ///< of its vertices, mm; leaves only
 };
+
+/// A group is on the other side of a thin part when the mean normals (short where a group mixes directions) say so, and
+/// deeper than so many vertex spacings, its own or the leaf's: nearer ones (around a rim, or coarse) cannot be resolved
+/// and fade like the surface around.
+constexpr float kOppositeCosine = -0.85f;
+constexpr float kOppositeDepth = 1.3f;
 
 /// ΔᵀCΔ and the like of a block of sources or receivers.
 struct Displacement {
@@ -76,7 +84,8 @@ struct FarField {
   }
 
   /// Adds the pack's vector at `i` where `accepted`. Value Φ(f + tr C f′ + 2f″ΔᵀCΔ) − 2f′Δ·D, gradient 2Φf′Δ − 2f′D −
-  /// 4f″(Δ·D)Δ, Hessian Φ(2f′I + 4f″ΔΔᵀ), Δ from the flux centroid to the receiver's centre, derivatives in r².
+  /// 4f″(Δ·D)Δ and what the quadrupole adds to it, Hessian Φ(2f′I + 4f″ΔΔᵀ), Δ from the flux centroid to the receiver's
+  /// centre, derivatives in r².
   HWY_INLINE void add(const KernelDomain& domain, const KernelTable& table, const Pack& pack, size_t i,
                       const Receiver& receiver, hn::Mask<Tag> accepted) {
     const Tag d;
@@ -86,27 +95,42 @@ struct FarField {
     way.y = hn::Sub(hn::Set(d, receiver.centre_mm.y), row(kFluxY));
     way.z = hn::Sub(hn::Set(d, receiver.centre_mm.z), row(kFluxZ));
     const V xx = hn::Mul(way.x, way.x), yy = hn::Mul(way.y, way.y), zz = hn::Mul(way.z, way.z);
-    TablePosition at = locate(domain, hn::Add(xx, hn::Add(yy, zz)));
+    const TablePosition at = locate(domain, hn::Add(xx, hn::Add(yy, zz)));
     // No weight, no contribution.
-    at.inverse = hn::IfThenElseZero(accepted, at.inverse);
-    const V inverse2 = hn::Mul(at.inverse, at.inverse);
-    const V inverse3 = hn::Mul(inverse2, at.inverse);
-    const V inverse4 = hn::Mul(inverse2, inverse2);
+    const V inverse3 = hn::IfThenElseZero(accepted, at.inverse3);
+    const V inverse5 = hn::Mul(inverse3, at.inverse2);
+    const V inverse7 = hn::Mul(inverse5, at.inverse2);
     const V cov_xx = row(kCovXX), cov_yy = row(kCovYY), cov_zz = row(kCovZZ);
     const V trace = hn::Add(cov_xx, hn::Add(cov_yy, cov_zz));
-    V along = covariance_along(way, cov_xx, cov_yy, cov_zz, row(kCov2XY), row(kCov2XZ), row(kCov2YZ));
+    const V half = hn::Set(d, 0.5f);
+    const V cov_xy = hn::Mul(half, row(kCov2XY)), cov_xz = hn::Mul(half, row(kCov2XZ)),
+            cov_yz = hn::Mul(half, row(kCov2YZ));
+    // CΔ and 2ΔᵀCΔ.
+    const V turned_x = hn::MulAdd(cov_xx, way.x, hn::MulAdd(cov_xy, way.y, hn::Mul(cov_xz, way.z)));
+    const V turned_y = hn::MulAdd(cov_xy, way.x, hn::MulAdd(cov_yy, way.y, hn::Mul(cov_yz, way.z)));
+    const V turned_z = hn::MulAdd(cov_xz, way.x, hn::MulAdd(cov_yz, way.y, hn::Mul(cov_zz, way.z)));
+    V along = hn::MulAdd(turned_x, way.x, hn::MulAdd(turned_y, way.y, hn::Mul(turned_z, way.z)));
     along = hn::Add(along, along);
+    const V third_scale = hn::Mul(hn::Set(d, 0.5f * domain.scale), at.inverse2);
     const V xy = hn::Mul(way.x, way.y), xz = hn::Mul(way.x, way.z), yz = hn::Mul(way.y, way.z);
     const V two = hn::Set(d, 2.0f);
-    for (int c = 0; c < 3; ++c) {
+    for_channels([&](int c) HWY_ATTR {
       const V flux = row(kFluxR + static_cast<uint32_t>(c));
-      const V f = hn::Mul(cubic(table.coefficient[0][c], at), inverse2);
-      const V f1 = hn::Mul(cubic(table.coefficient[1][c], at), inverse3);
-      const V f2 = hn::Mul(cubic(table.coefficient[2][c], at), inverse4);
+      const V f = hn::Mul(cubic(table.coefficient[0][c], at), inverse3);
+      const V f1 = hn::Mul(cubic(table.coefficient[1][c], at), inverse5);
+      // f‴ from the slope of the same cubic: d(v²)/d(r²) is the domain's scale.
+      const CubicSlope second = cubic_slope(table.coefficient[2][c], at);
+      const V f2 = hn::Mul(second.value, inverse7);
+      const V f3 = hn::Mul(hn::Mul(third_scale, inverse7),
+                           hn::NegMulAdd(hn::Set(d, 7.0f), second.value, hn::Mul(second.slope, at.v)));
       value[c] = hn::MulAdd(flux, hn::MulAdd(trace, f1, hn::MulAdd(along, f2, f)), value[c]);
       const V slope = hn::Mul(two, hn::Mul(flux, f1));
       const V bend = hn::Mul(hn::Set(d, 4.0f), hn::Mul(flux, f2));
-      V pull = slope;
+      // 2Φ(tr C f″ + 2f‴ΔᵀCΔ)Δ + 4Φf″CΔ: how the quadrupole's share changes across the receiver.
+      V pull = hn::MulAdd(hn::Mul(two, flux), hn::MulAdd(trace, f2, hn::Mul(along, f3)), slope);
+      gradient[c][0] = hn::MulAdd(bend, turned_x, gradient[c][0]);
+      gradient[c][1] = hn::MulAdd(bend, turned_y, gradient[c][1]);
+      gradient[c][2] = hn::MulAdd(bend, turned_z, gradient[c][2]);
       if constexpr (kColoured) {
         const uint32_t field = kDipole + 3 * static_cast<uint32_t>(c);
         const V dx = row(field), dy = row(field + 1), dz = row(field + 2);
@@ -116,7 +140,7 @@ struct FarField {
         gradient[c][0] = hn::NegMulAdd(twice, dx, gradient[c][0]);
         gradient[c][1] = hn::NegMulAdd(twice, dy, gradient[c][1]);
         gradient[c][2] = hn::NegMulAdd(twice, dz, gradient[c][2]);
-        pull = hn::NegMulAdd(hn::Mul(hn::Set(d, 4.0f), f2), dot, slope);
+        pull = hn::NegMulAdd(hn::Mul(hn::Set(d, 4.0f), f2), dot, pull);
       }
       gradient[c][0] = hn::MulAdd(pull, way.x, gradient[c][0]);
       gradient[c][1] = hn::MulAdd(pull, way.y, gradient[c][1]);
@@ -127,7 +151,7 @@ struct FarField {
       hessian[c][3] = hn::MulAdd(bend, xy, hessian[c][3]);
       hessian[c][4] = hn::MulAdd(bend, xz, hessian[c][4]);
       hessian[c][5] = hn::MulAdd(bend, yz, hessian[c][5]);
-    }
+    });
   }
 
   HWY_INLINE void add_to(Expansion& expansion) const {
@@ -141,19 +165,25 @@ struct FarField {
   }
 };
 
-/// How many entries of the lists are in use.
-struct ListCounts {
-  size_t near = 0;          ///< nodes to be opened
-  size_t leaf_moments = 0;  ///< columns that the leaf takes as moments
-};
+/// Appends entry(lane) for each lane of `mask`. (A compressing store copies its own table each time where there is no
+/// such instruction.)
+template <class Entry>
+HWY_INLINE size_t append(hn::Mask<Tag> mask, const Entry& entry, uint32_t* list, size_t count) {
+  uint8_t bytes[8] = {};
+  hn::StoreMaskBits(Tag(), mask, bytes);
+  uint32_t bits;
+  std::memcpy(&bits, bytes, sizeof(bits));
+  for (; bits != 0; bits &= bits - 1) list[count++] = entry(static_cast<uint32_t>(std::countr_zero(bits)));
+  return count;
+}
 
-/// Adds what is far from `receiver` to `expansion` and lists the rest; where the receiver is a leaf, those whose moments
-/// suffice for its vertices apart. Nodes without flux are neither.
+/// Adds what is far from `receiver` to `expansion`; lists the rest, to be opened, in level.near, and gives their
+/// number. Where the receiver is a leaf, those whose moments suffice for its vertices go to scratch.sides. Nodes
+/// without flux are neither.
 template <bool kColoured, bool kLeaf>
-HWY_INLINE ListCounts far_field(const GatherInput& input, const Pack& pack, const Receiver& receiver,
-                                GatherScratch& scratch, GatherScratch::Level& level, Expansion& expansion) {
+HWY_INLINE size_t far_field(const GatherInput& input, const Pack& pack, const Receiver& receiver,
+                            GatherScratch& scratch, GatherScratch::Level& level, Expansion& expansion) {
   const Tag d;
-  const hn::RebindToUnsigned<Tag> du;
   const float z2 = input.kernels->smooth_mm() * input.kernels->smooth_mm();
   const V opening2 = hn::Set(d, input.settings.opening * input.settings.opening);
   const V leaf_opening2 = hn::Set(d, input.settings.leaf_opening * input.settings.leaf_opening);
@@ -162,7 +192,8 @@ HWY_INLINE ListCounts far_field(const GatherInput& input, const Pack& pack, cons
   const V radius = hn::Set(d, receiver.radius), spread2 = hn::Set(d, receiver.spread2);
   FarField<kColoured> far;
   bool any = false;
-  ListCounts counts;
+  size_t open = 0;
+  for (LeafSources& side : scratch.sides) side.wide_moment_count = 0;
   for (size_t i = 0; i < pack.count; i += hn::Lanes(d)) {
     const auto row = [&](uint32_t field) HWY_ATTR { return hn::Load(d, pack.rows + field * pack.stride + i); };
     const V dx = hn::Sub(x, row(kCentreX)), dy = hn::Sub(y, row(kCentreY)), dz = hn::Sub(z, row(kCentreZ));
@@ -184,19 +215,36 @@ HWY_INLINE ListCounts far_field(const GatherInput& input, const Pack& pack, cons
     if constexpr (kLeaf) {
       const V gap = hn::Max(hn::Sub(hn::Sqrt(distance2), radius), hn::Zero(d));
       const V gap2 = hn::MulAdd(gap, gap, hn::Set(d, z2));
-      const auto by_moments = hn::And(listed, hn::And(hn::Lt(source_spread2, hn::Mul(leaf_opening2, gap2)),
-                                                      hn::Lt(hn::Mul(source_radius, source_radius),
-                                                             hn::Mul(hn::Set(d, 1.2f), gap2))));
-      const auto columns = hn::Iota(du, static_cast<uint32_t>(i));
-      counts.leaf_moments += hn::CompressStore(columns, hn::RebindMask(du, by_moments), du,
-                                               scratch.leaf_moments.data() + counts.leaf_moments);
+      const auto by_moments =
+          hn::And(listed, hn::And(hn::Lt(source_spread2, hn::Mul(leaf_opening2, gap2)),
+                                  hn::Lt(hn::Mul(source_radius, source_radius), hn::Mul(hn::Set(d, 1.2f), gap2))));
+      // F·F′ < cosine·A·A′ and |F·(c − c′)| > depth·A·s, s² the larger of the leaf's and a sixteenth of the source's
+      // area.
+      const V turn = hn::MulAdd(hn::Set(d, receiver.facing.x), row(kFacingX),
+                                hn::MulAdd(hn::Set(d, receiver.facing.y), row(kFacingY),
+                                           hn::Mul(hn::Set(d, receiver.facing.z), row(kFacingZ))));
+      const V depth =
+          hn::MulAdd(hn::Set(d, receiver.facing.x), dx,
+                     hn::MulAdd(hn::Set(d, receiver.facing.y), dy, hn::Mul(hn::Set(d, receiver.facing.z), dz)));
+      const auto opposite =
+          hn::And(hn::Lt(turn, hn::Mul(hn::Set(d, kOppositeCosine * receiver.area), row(kArea))),
+                  hn::Gt(hn::Mul(depth, depth),
+                         hn::Mul(hn::Set(d, kOppositeDepth * kOppositeDepth * receiver.area * receiver.area),
+                                 hn::Max(hn::Set(d, receiver.spacing * receiver.spacing),
+                                         hn::Mul(hn::Set(d, 1.0f / 16), row(kArea))))));
+      const auto list = [&](LeafSources& side, hn::Mask<Tag> mask) HWY_ATTR {
+        const auto column = [i](uint32_t lane) { return static_cast<uint32_t>(i) + lane; };
+        side.wide_moment_count = append(mask, column, side.wide_moments.data(), side.wide_moment_count);
+      };
+      list(scratch.sides[kSame], hn::AndNot(opposite, by_moments));
+      list(scratch.sides[kOpposite], hn::And(opposite, by_moments));
       listed = hn::AndNot(by_moments, listed);
     }
-    counts.near += hn::CompressStore(hn::Load(du, pack.nodes + i), hn::RebindMask(du, listed), du,
-                                     level.near.data() + counts.near);
+    open = append(
+        listed, [&](uint32_t lane) { return pack.nodes[i + lane]; }, level.near.data(), open);
   }
   if (any) far.add_to(expansion);
-  return counts;
+  return open;
 }
 
 }  // namespace diaphane::diffusion::HWY_NAMESPACE

@@ -1,67 +1,78 @@
 #include "diffusion/gather.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <utility>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "diffusion/gather.cc"
+// foreach_target.h comes before whatever it repeats.
+// clang-format off
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-
 #include "diffusion/far_field-inl.h"
 #include "diffusion/kernel-inl.h"
 #include "diffusion/leaf-inl.h"
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace diaphane::diffusion::HWY_NAMESPACE {
 
-Expansion shifted(const Expansion& from, const glm::vec3& centre_mm) {
-  Expansion to = from;
+/// `from` about another centre.
+void shift(const Expansion& from, const glm::vec3& centre_mm, Expansion& to) {
   to.centre_mm = centre_mm;
   const glm::vec3 h = centre_mm - from.centre_mm;
   for (int c = 0; c < 3; ++c) {
     const float* m = from.hessian[c];
-    const glm::vec3 turn(m[0] * h.x + m[3] * h.y + m[4] * h.z, m[3] * h.x + m[1] * h.y + m[5] * h.z,
-                         m[4] * h.x + m[5] * h.y + m[2] * h.z);
     const float* g = from.gradient[c];
-    to.value[c] += h.x * (g[0] + 0.5f * turn.x) + h.y * (g[1] + 0.5f * turn.y) + h.z * (g[2] + 0.5f * turn.z);
-    for (int a = 0; a < 3; ++a) to.gradient[c][a] += turn[a];
+    const float turn[3] = {m[0] * h.x + m[3] * h.y + m[4] * h.z, m[3] * h.x + m[1] * h.y + m[5] * h.z,
+                           m[4] * h.x + m[5] * h.y + m[2] * h.z};
+    to.value[c] =
+        from.value[c] + h.x * (g[0] + 0.5f * turn[0]) + h.y * (g[1] + 0.5f * turn[1]) + h.z * (g[2] + 0.5f * turn[2]);
+    for (int a = 0; a < 3; ++a) to.gradient[c][a] = g[a] + turn[a];
+    for (int i = 0; i < 6; ++i) to.hessian[c][i] = m[i];
   }
-  return to;
 }
 
 template <bool kColoured>
-void descend(const GatherInput& input, GatherScratch& scratch, uint32_t level, uint32_t node, const Expansion& expansion,
-             const uint32_t* near, size_t near_count, JobList* list) {
+void descend(const GatherInput& input, GatherScratch& scratch, uint32_t level, uint32_t node,
+             const Expansion& expansion, const uint32_t* near, size_t near_count, JobList* list) {
   const uint32_t child_level = level - 1;
   const NodeTree& tree = *input.tree;
   GatherScratch::Level& buffers = scratch.levels[child_level];
   const Pack pack = pack_children(tree, child_level, near, near_count, kColoured, buffers);
-  if (child_level == NodeTree::kLeafLevel && scratch.leaf_moments.size() < buffers.near.size()) {
-    scratch.leaf_moments.resize(buffers.near.size());
+  if (child_level == NodeTree::kLeafLevel) {
+    for (LeafSources& side : scratch.sides) {
+      if (side.wide_moments.size() < buffers.near.size()) side.wide_moments.resize(buffers.near.size());
+    }
   }
   const float* block = tree.block(child_level, node);
   for (uint32_t k = 0; k < 4 && 4 * node + k < tree.node_count(child_level); ++k) {
-    const Receiver receiver{{block[4 * kCentreX + k], block[4 * kCentreY + k], block[4 * kCentreZ + k]},
-                            block[4 * kSpread2 + k],
-                            block[4 * kRadius + k]};
-    Expansion own = shifted(expansion, receiver.centre_mm);
+    const Receiver receiver{
+        {block[4 * kCentreX + k], block[4 * kCentreY + k], block[4 * kCentreZ + k]},
+        block[4 * kSpread2 + k],
+        block[4 * kRadius + k],
+        block[4 * kArea + k],
+        {block[4 * kFacingX + k], block[4 * kFacingY + k], block[4 * kFacingZ + k]},
+        child_level == NodeTree::kLeafLevel ? spacing_of_key(tree.spacing_keys[4 * node + k]) : 0.0f};
+    Expansion own;
+    shift(expansion, receiver.centre_mm, own);
     if (child_level == NodeTree::kLeafLevel) {
-      const ListCounts counts = far_field<kColoured, true>(input, pack, receiver, scratch, buffers, own);
-      gather_leaf<kColoured>(input, 4 * node + k, receiver, own, pack, buffers.near.data(), counts, scratch);
+      const size_t open = far_field<kColoured, true>(input, pack, receiver, scratch, buffers, own);
+      gather_leaf<kColoured>(input, 4 * node + k, receiver, own, pack, buffers.near.data(), open, scratch);
       continue;
     }
-    const ListCounts counts = far_field<kColoured, false>(input, pack, receiver, scratch, buffers, own);
+    const size_t open = far_field<kColoured, false>(input, pack, receiver, scratch, buffers, own);
     if (list && child_level == list->level) {
       if (list->jobs->size() == list->count) list->jobs->emplace_back();
       GatherJob& job = (*list->jobs)[list->count++];
       job.node = 4 * node + k;
       job.expansion = own;
-      job.near.assign(buffers.near.data(), buffers.near.data() + counts.near);
+      job.near.assign(buffers.near.data(), buffers.near.data() + open);
     } else {
-      descend<kColoured>(input, scratch, child_level, 4 * node + k, own, buffers.near.data(), counts.near, list);
+      descend<kColoured>(input, scratch, child_level, 4 * node + k, own, buffers.near.data(), open, list);
     }
   }
 }

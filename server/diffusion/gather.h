@@ -1,6 +1,7 @@
 // Radiosity at every vertex from the tree: receivers and sources descend together.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -20,16 +21,16 @@ struct GatherSettings {
 
 /// Radiosity around a node's centre: value, gradient and Hessian (xx yy zz xy xz yz) of each channel.
 struct Expansion {
-  glm::vec3 centre_mm{0};
-  float value[3] = {};
-  float gradient[3][3] = {};
-  float hessian[3][6] = {};
+  glm::vec3 centre_mm;
+  float value[3];
+  float gradient[3][3];
+  float hessian[3][6];
 };
 
 /// A receiver node whose turn has yet to come.
 struct GatherJob {
   uint32_t node = 0;
-  Expansion expansion;
+  Expansion expansion{};
   std::vector<uint32_t> near;  ///< sources of the node's own level that its children must look into
 };
 
@@ -43,6 +44,17 @@ struct JobList {
   size_t count;
 };
 
+/// The surface around a leaf, and what faces it from the other side of a thin part.
+enum Side { kSame, kOpposite };
+
+/// What a leaf adds up one by one.
+struct LeafSources {
+  AlignedVector<uint32_t> wide_moments;  ///< columns of the pack: whole leaves
+  std::vector<const float*> moments;     ///< columns of level-1 blocks: four vertices
+  std::vector<uint32_t> points;          ///< slots
+  size_t wide_moment_count = 0, moment_count = 0, point_count = 0;
+};
+
 /// Working memory of one thread; grows to what a body needs and stays.
 struct GatherScratch {
   struct Level {
@@ -51,9 +63,7 @@ struct GatherScratch {
     AlignedVector<uint32_t> near;
   };
   std::vector<Level> levels;
-  AlignedVector<uint32_t> leaf_moments;  ///< columns of the pack that a leaf takes as moments
-  std::vector<const float*> moments;          ///< columns of level-1 blocks that a leaf takes as moments
-  std::vector<uint32_t> points;               ///< slots that a leaf takes one by one
+  std::array<LeafSources, 2> sides;  ///< by Side
 };
 
 /// Everything that a gather reads, and where it writes.

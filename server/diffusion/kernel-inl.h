@@ -18,6 +18,14 @@ using IndexTag = hn::RebindToSigned<Tag>;
 using V = hn::Vec<Tag>;
 using Index = hn::Vec<IndexTag>;
 
+/// Calls work(0), work(1), work(2) without a loop, so that what it sums up stays in registers.
+template <class Work>
+HWY_INLINE void for_channels(const Work& work) {
+  work(0);
+  work(1);
+  work(2);
+}
+
 /// Lanes choose one of eight entries by their index's low three bits.
 HWY_INLINE V look_up(const float* entries, Index index) {
 #if HWY_TARGET == HWY_AVX2
@@ -33,31 +41,52 @@ HWY_INLINE V look_up(const float* entries, Index index) {
 
 /// Where squared distances fall in the tables.
 struct TablePosition {
-  V u;         ///< clamped to the tables
-  V inverse;   ///< 1/u, not clamped: the kernel decays beyond the tables
+  V v;         ///< clamped to the tables
+  V inverse2;  ///< 1/v², not clamped: the kernel decays beyond the tables
+  V inverse3;
   Index index;
 };
 
 HWY_INLINE TablePosition locate(const KernelDomain& domain, V distance2) {
   const Tag d;
-  const V u = hn::MulAdd(distance2, hn::Set(d, domain.scale), hn::Set(d, KernelDomain::kSmallest));
-  const V clamped = hn::Min(u, hn::Set(d, KernelDomain::kLargest));
+  const V squared =
+      hn::MulAdd(distance2, hn::Set(d, domain.scale), hn::Set(d, KernelDomain::kSmallest * KernelDomain::kSmallest));
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-  // The approximation is exactly specified at this level; one Newton step makes it as good as a division.
-  const V guess = hn::ApproximateReciprocal(u);
-  const V inverse = hn::Mul(guess, hn::NegMulAdd(u, guess, hn::Set(d, 2.0f)));
+  // The approximation is exactly specified at this level; a Newton step makes it good to rounding.
+  const V guess = hn::ApproximateReciprocalSqrt(squared);
+  const V residual = hn::NegMulAdd(hn::Mul(squared, guess), guess, hn::Set(d, 1.0f));
+  const V inverse = hn::MulAdd(hn::Mul(guess, hn::Set(d, 0.5f)), residual, guess);
+  const V root = hn::Mul(squared, inverse);
 #else
-  const V inverse = hn::Div(hn::Set(d, 1.0f), u);
+  const V root = hn::Sqrt(squared);
+  const V inverse = hn::Div(hn::Set(d, 1.0f), root);
 #endif
-  return {clamped, inverse, hn::ShiftRight<24>(hn::BitCast(IndexTag(), clamped))};
+  const V clamped = hn::Min(root, hn::Set(d, KernelDomain::kLargest));
+  const V inverse2 = hn::Mul(inverse, inverse);
+  return {clamped, inverse2, hn::Mul(inverse2, inverse), hn::ShiftRight<23>(hn::BitCast(IndexTag(), clamped))};
 }
 
 HWY_INLINE V cubic(const float (&coefficients)[KernelTable::kCoefficients][KernelTable::kSegments],
                    const TablePosition& at) {
   V sum = look_up(coefficients[3], at.index);
-  sum = hn::MulAdd(sum, at.u, look_up(coefficients[2], at.index));
-  sum = hn::MulAdd(sum, at.u, look_up(coefficients[1], at.index));
-  return hn::MulAdd(sum, at.u, look_up(coefficients[0], at.index));
+  sum = hn::MulAdd(sum, at.v, look_up(coefficients[2], at.index));
+  sum = hn::MulAdd(sum, at.v, look_up(coefficients[1], at.index));
+  return hn::MulAdd(sum, at.v, look_up(coefficients[0], at.index));
+}
+
+/// A cubic and its derivative in v.
+struct CubicSlope {
+  V value, slope;
+};
+
+HWY_INLINE CubicSlope cubic_slope(const float (&coefficients)[KernelTable::kCoefficients][KernelTable::kSegments],
+                                  const TablePosition& at) {
+  V slope = look_up(coefficients[3], at.index);
+  V value = hn::MulAdd(slope, at.v, look_up(coefficients[2], at.index));
+  slope = hn::MulAdd(slope, at.v, value);
+  value = hn::MulAdd(value, at.v, look_up(coefficients[1], at.index));
+  slope = hn::MulAdd(slope, at.v, value);
+  return {hn::MulAdd(value, at.v, look_up(coefficients[0], at.index)), slope};
 }
 
 }  // namespace diaphane::diffusion::HWY_NAMESPACE

@@ -11,6 +11,7 @@ using std::numbers::pi;
 
 /// Beyond the last r with r²·Rd above this share of its peak, the kernel is left to decay as it will.
 constexpr double kNegligible = 1e-4;
+/// From the tables' first v² to their last.
 constexpr double kTableSpan = 65536;
 
 /// h(d) = (1 + σd) e^(−σd)/d³ with d² = r² + height², and its derivatives in r².
@@ -21,7 +22,7 @@ KernelValue source_kernel(double height, double transport, double distance2) {
           0.25 * e * (15 + s * (15 + s * (6 + s))) / (d * d2 * d2 * d2)};
 }
 
-/// The cubic through four Chebyshev nodes of [1, 4], as coefficients of powers of t.
+/// The cubic through four points, as coefficients of powers of t.
 std::array<double, 4> interpolate_cubic(const std::array<double, 4>& t, const std::array<double, 4>& values) {
   std::array<double, 4> divided = values;
   for (size_t order = 1; order < 4; ++order) {
@@ -29,7 +30,8 @@ std::array<double, 4> interpolate_cubic(const std::array<double, 4>& t, const st
   }
   std::array<double, 4> coefficients{divided[3], 0, 0, 0};
   for (int i = 2; i >= 0; --i) {
-    for (size_t power = 3; power > 0; --power) coefficients[power] = coefficients[power - 1] - t[static_cast<size_t>(i)] * coefficients[power];
+    for (size_t power = 3; power > 0; --power)
+      coefficients[power] = coefficients[power - 1] - t[static_cast<size_t>(i)] * coefficients[power];
     coefficients[0] = divided[static_cast<size_t>(i)] - t[static_cast<size_t>(i)] * coefficients[0];
   }
   return coefficients;
@@ -39,16 +41,16 @@ std::array<double, 4> interpolate_cubic(const std::array<double, 4>& t, const st
 template <class Kernel>
 void tabulate(const KernelDomain& domain, int channel, const Kernel& kernel, KernelTable& table) {
   std::array<double, 4> nodes;
-  for (size_t i = 0; i < 4; ++i) nodes[i] = 2.5 - 1.5 * std::cos(pi * (static_cast<double>(i) + 0.5) / 4);
+  for (size_t i = 0; i < 4; ++i) nodes[i] = 1.5 - 0.5 * std::cos(pi * (static_cast<double>(i) + 0.5) / 4);
   double start = KernelDomain::kSmallest;
-  for (int segment = 0; segment < KernelTable::kSegments; ++segment, start *= 4) {
+  for (int segment = 0; segment < KernelTable::kSegments; ++segment, start *= 2) {
     std::array<double, 4> values[3];
     for (size_t i = 0; i < 4; ++i) {
-      const double u = start * nodes[i];
-      const KernelValue k = kernel((u - KernelDomain::kSmallest) / domain.scale);
-      values[0][i] = k.value * u * u;
-      values[1][i] = k.first * u * u * u;
-      values[2][i] = k.second * u * u * u * u;
+      const double v = start * nodes[i], v2 = v * v;
+      const KernelValue k = kernel((v2 - KernelDomain::kSmallest * KernelDomain::kSmallest) / domain.scale);
+      values[0][i] = k.value * v * v2;
+      values[1][i] = k.first * v * v2 * v2;
+      values[2][i] = k.second * v * v2 * v2 * v2;
     }
     for (int derivative = 0; derivative < 3; ++derivative) {
       const std::array<double, 4> cubic = interpolate_cubic(nodes, values[derivative]);
@@ -110,7 +112,8 @@ GaussianSum fit_gaussians(const optics::Dipole& dipole, int channel) {
 
   // ∫ Rd dA, to weigh the tail against.
   double total = 0;
-  for (double r = 0.01 * z; r < 1000 * z; r *= 1.05) total += 2 * pi * r * r * std::log(1.05) * dipole_kernel(dipole, channel, r * r).value;
+  for (double r = 0.01 * z; r < 1000 * z; r *= 1.05)
+    total += 2 * pi * r * r * std::log(1.05) * dipole_kernel(dipole, channel, r * r).value;
 
   // Normal equations of the weighted least squares.
   double matrix[kTerms][kTerms] = {}, right[kTerms] = {};
@@ -120,7 +123,8 @@ GaussianSum fit_gaussians(const optics::Dipole& dipole, int channel) {
     const double rd = dipole_kernel(dipole, channel, r * r).value;
     const double weight = 1 / (rd + 0.01 * total / (pi * (r * r + zr * zr)));
     double row[kTerms];
-    for (int k = 0; k < kTerms; ++k) row[k] = weight * std::exp(-0.5 * r * r / (sum.deviation_mm[k] * sum.deviation_mm[k]));
+    for (int k = 0; k < kTerms; ++k)
+      row[k] = weight * std::exp(-0.5 * r * r / (sum.deviation_mm[k] * sum.deviation_mm[k]));
     for (int a = 0; a < kTerms; ++a) {
       for (int b = 0; b < kTerms; ++b) matrix[a][b] += row[a] * row[b];
       right[a] += row[a] * weight * rd;
@@ -153,10 +157,14 @@ void KernelSet::prepare(float diameter_mm, const std::vector<uint8_t>& spacing_k
   if (diameter != diameter_mm_) {
     diameter_mm_ = diameter;
     const double range = effective_range(dipole_, diameter);
-    domain_.scale = static_cast<float>(KernelDomain::kSmallest /
-                                       std::max(0.3 * smooth_mm_ * smooth_mm_, range * range / (0.9 * kTableSpan)));
+    // What v² is at r = 0, mm². Never wider than the kernel's own peak: beyond the tables the kernel falls off by r⁻³,
+    // as it does where nothing is absorbed; near the peak nothing would help.
+    const double peak2 = smooth_mm_ * smooth_mm_;
+    const double first2 = std::clamp(range * range / (0.9 * kTableSpan), 0.3 * peak2, peak2);
+    domain_.scale = static_cast<float>(KernelDomain::kSmallest * KernelDomain::kSmallest / first2);
     for (int c = 0; c < 3; ++c) {
-      tabulate(domain_, c, [&](double distance2) { return dipole_kernel(dipole_, c, distance2); }, far_);
+      tabulate(
+          domain_, c, [&](double distance2) { return dipole_kernel(dipole_, c, distance2); }, far_);
     }
     near_.fill(nullptr);
   }

@@ -31,18 +31,19 @@ struct GaussianSum {
 };
 GaussianSum fit_gaussians(const optics::Dipole& dipole, int channel);
 
-/// With u = scale·r² + 2, clamped to 2..2^17: f·u², f′·u³ and f″·u⁴ of each channel are cubics in u on eight segments of two
-/// octaves; the segment is what is left of u's exponent without its lowest bit.
+/// With v = √(scale·r² + 4), clamped to 2..512: f·v³, f′·v⁵ and f″·v⁷ of each channel are cubics in v on eight segments
+/// of one octave each; the segment is the low three bits of v's exponent. (In v, not v²: the nearest singularity of
+/// what is interpolated is twice as far away, the error fourteen times smaller.)
 struct alignas(64) KernelTable {
   static constexpr int kSegments = 8;
   static constexpr int kCoefficients = 4;
-  float coefficient[3][3][kCoefficients][kSegments];  ///< [derivative][channel][power of u][segment]
+  float coefficient[3][3][kCoefficients][kSegments];  ///< [derivative][channel][power of v][segment]
 };
 
 /// Which r² the tables of a body cover.
 struct KernelDomain {
-  static constexpr float kSmallest = 2;
-  static constexpr float kLargest = 131071.99f;
+  static constexpr float kSmallest = 2;  ///< v at r = 0
+  static constexpr float kLargest = 511.999f;
   float scale = 1;  ///< mm⁻²
 };
 

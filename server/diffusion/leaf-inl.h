@@ -1,4 +1,5 @@
-// The sixteen vertices of a leaf: the expansion that came down, near nodes by moments or point by point, the local term.
+// The sixteen vertices of a leaf: the expansion that came down, near nodes by moments or point by point, the local
+// term.
 #if defined(DIAPHANE_DIFFUSION_LEAF_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef DIAPHANE_DIFFUSION_LEAF_INL_H_
 #undef DIAPHANE_DIFFUSION_LEAF_INL_H_
@@ -38,32 +39,32 @@ HWY_INLINE void add_moments(const KernelDomain& domain, const KernelTable& table
   V along = covariance_along(way, field(kCovXX), field(kCovYY), field(kCovZZ), field(kCov2XY), field(kCov2XZ),
                              field(kCov2YZ));
   along = hn::Add(along, along);
-  const V inverse2 = hn::Mul(at.inverse, at.inverse);
-  // Factors of f′u³ and f″u⁴ next to fu².
-  const V first_weight = hn::Mul(trace, at.inverse), second_weight = hn::Mul(along, inverse2);
-  for (uint32_t c = 0; c < 3; ++c) {
+  // Factors of f′v⁵ and f″v⁷ next to fv³.
+  const V first_weight = hn::Mul(trace, at.inverse2);
+  const V second_weight = hn::Mul(along, hn::Mul(at.inverse2, at.inverse2));
+  for_channels([&](uint32_t c) HWY_ATTR {
     const V f1 = cubic(table.coefficient[1][c], at);
     V sum = hn::MulAdd(second_weight, cubic(table.coefficient[2][c], at), cubic(table.coefficient[0][c], at));
     sum = hn::Mul(hn::MulAdd(first_weight, f1, sum), field(kFluxR + c));
     if constexpr (kColoured) {
-      const V dot = hn::MulAdd(field(kDipole + 3 * c), way.x,
-                               hn::MulAdd(field(kDipole + 3 * c + 1), way.y, hn::Mul(field(kDipole + 3 * c + 2), way.z)));
-      sum = hn::NegMulAdd(hn::Mul(hn::Add(dot, dot), at.inverse), f1, sum);
+      const V dot =
+          hn::MulAdd(field(kDipole + 3 * c), way.x,
+                     hn::MulAdd(field(kDipole + 3 * c + 1), way.y, hn::Mul(field(kDipole + 3 * c + 2), way.z)));
+      sum = hn::NegMulAdd(hn::Mul(hn::Add(dot, dot), at.inverse2), f1, sum);
     }
-    leaf.radiosity[c] = hn::MulAdd(sum, inverse2, leaf.radiosity[c]);
-  }
+    leaf.radiosity[c] = hn::MulAdd(sum, at.inverse3, leaf.radiosity[c]);
+  });
 }
 
-HWY_INLINE void add_point(const KernelDomain& domain, const KernelTable& table, const Source& source, LeafVector& leaf) {
+HWY_INLINE void add_point(const KernelDomain& domain, const KernelTable& table, const Source& source,
+                          LeafVector& leaf) {
   const Tag d;
-  const Displacement way =
-      displacement(leaf, &source.position_mm.x, &source.position_mm.y, &source.position_mm.z);
+  const Displacement way = displacement(leaf, &source.position_mm.x, &source.position_mm.y, &source.position_mm.z);
   const TablePosition at = locate(domain, way.squared);
-  const V inverse2 = hn::Mul(at.inverse, at.inverse);
-  for (int c = 0; c < 3; ++c) {
-    const V weight = hn::Mul(inverse2, hn::Set(d, source.flux_w[c]));
+  for_channels([&](int c) HWY_ATTR {
+    const V weight = hn::Mul(at.inverse3, hn::Set(d, source.flux_w[c]));
     leaf.radiosity[c] = hn::MulAdd(cubic(table.coefficient[0][c], at), weight, leaf.radiosity[c]);
-  }
+  });
 }
 
 /// value + g·h + ½hᵀHh at the vertices.
@@ -76,58 +77,80 @@ HWY_INLINE void add_expansion(const Expansion& expansion, LeafVector& leaf) {
   for (int c = 0; c < 3; ++c) {
     const auto hessian = [&](int m) HWY_ATTR { return hn::Set(d, expansion.hessian[c][m]); };
     const auto gradient = [&](int a) HWY_ATTR { return hn::Set(d, expansion.gradient[c][a]); };
-    const V along_x = hn::MulAdd(hn::Mul(half, hessian(0)), x, hn::MulAdd(hessian(3), y, hn::MulAdd(hessian(4), z, gradient(0))));
+    const V along_x =
+        hn::MulAdd(hn::Mul(half, hessian(0)), x, hn::MulAdd(hessian(3), y, hn::MulAdd(hessian(4), z, gradient(0))));
     const V along_y = hn::MulAdd(hn::Mul(half, hessian(1)), y, hn::MulAdd(hessian(5), z, gradient(1)));
     const V along_z = hn::MulAdd(hn::Mul(half, hessian(2)), z, gradient(2));
-    leaf.radiosity[c] = hn::Add(leaf.radiosity[c],
-                                hn::MulAdd(along_x, x, hn::MulAdd(along_y, y, hn::MulAdd(along_z, z, hn::Set(d, expansion.value[c])))));
+    leaf.radiosity[c] =
+        hn::Add(leaf.radiosity[c],
+                hn::MulAdd(along_x, x, hn::MulAdd(along_y, y, hn::MulAdd(along_z, z, hn::Set(d, expansion.value[c])))));
   }
 }
 
-/// Sorts the children of the nodes to be opened into moments and points; gives how many of each.
-HWY_INLINE std::pair<size_t, size_t> open_nodes(const GatherInput& input, const Receiver& receiver, const uint32_t* nodes,
-                                                size_t node_count, GatherScratch& scratch) {
-  if (scratch.points.size() < 16 * node_count) {
-    scratch.points.resize(32 * node_count);
-    scratch.moments.resize(8 * node_count);
+/// Sorts the children of the nodes to be opened into moments and points of either side.
+HWY_INLINE void open_nodes(const GatherInput& input, const Receiver& receiver, const uint32_t* nodes, size_t node_count,
+                           GatherScratch& scratch) {
+  for (LeafSources& side : scratch.sides) {
+    side.moment_count = side.point_count = 0;
+    if (side.points.size() >= 16 * node_count) continue;
+    side.points.resize(32 * node_count);
+    side.moments.resize(8 * node_count);
   }
   const float z2 = input.kernels->smooth_mm() * input.kernels->smooth_mm();
   const float opening2 = input.settings.leaf_opening * input.settings.leaf_opening;
-  size_t moments = 0, points = 0;
   for (size_t i = 0; i < node_count; ++i) {
     const float* block = input.tree->block(1, nodes[i]);
     for (uint32_t k = 0; k < 4; ++k) {
       const float* column = block + k;
       if (!(column[4 * kFluxR] + column[4 * kFluxG] + column[4 * kFluxB] > 0)) continue;
+      const glm::vec3& facing = receiver.facing;
+      const float turn =
+          facing.x * column[4 * kFacingX] + facing.y * column[4 * kFacingY] + facing.z * column[4 * kFacingZ];
       const float dx = column[4 * kCentreX] - receiver.centre_mm.x, dy = column[4 * kCentreY] - receiver.centre_mm.y;
       const float dz = column[4 * kCentreZ] - receiver.centre_mm.z;
+      const float depth = std::abs(facing.x * dx + facing.y * dy + facing.z * dz);
+      const bool opposite =
+          turn < kOppositeCosine * receiver.area * column[4 * kArea] &&
+          depth > kOppositeDepth * receiver.area * std::max(receiver.spacing, 0.5f * std::sqrt(column[4 * kArea]));
+      LeafSources& side = scratch.sides[opposite ? kOpposite : kSame];
       const float gap = std::max(0.0f, std::sqrt(dx * dx + dy * dy + dz * dz) - receiver.radius);
       const float gap2 = gap * gap + z2, radius = column[4 * kRadius];
       if (column[4 * kSpread2] < opening2 * gap2 && radius * radius < 1.2f * gap2) {
-        scratch.moments[moments++] = column;
+        side.moments[side.moment_count++] = column;
         continue;
       }
       const uint32_t first = 16 * nodes[i] + 4 * k;
       for (uint32_t slot = first; slot < first + 4; ++slot) {
         const glm::vec3& flux = input.tree->sources[slot].flux_w;
-        scratch.points[points] = slot;
-        points += flux.x + flux.y + flux.z > 0;
+        side.points[side.point_count] = slot;
+        side.point_count += flux.x + flux.y + flux.z > 0;
       }
     }
   }
-  return {moments, points};
+}
+
+template <bool kColoured>
+HWY_INLINE void add_side(const GatherInput& input, const KernelTable& table, const Pack& pack, const LeafSources& side,
+                         LeafVector& into) {
+  const KernelDomain domain = input.kernels->domain();
+  LeafVector leaf = into;
+  for (size_t m = 0; m < side.wide_moment_count; ++m) {
+    add_moments<kColoured>(domain, table, pack.rows + side.wide_moments[m], pack.stride, leaf);
+  }
+  for (size_t m = 0; m < side.moment_count; ++m) add_moments<kColoured>(domain, table, side.moments[m], 4, leaf);
+  for (size_t p = 0; p < side.point_count; ++p) add_point(domain, table, input.tree->sources[side.points[p]], leaf);
+  into = leaf;
 }
 
 template <bool kColoured>
 HWY_INLINE void gather_leaf(const GatherInput& input, uint32_t leaf_node, const Receiver& receiver,
-                            const Expansion& expansion, const Pack& pack, const uint32_t* open, ListCounts counts,
+                            const Expansion& expansion, const Pack& pack, const uint32_t* open, size_t open_count,
                             GatherScratch& scratch) {
   const Tag d;
-  const KernelDomain domain = input.kernels->domain();
   const uint8_t key = input.tree->spacing_keys[leaf_node];
   const KernelTable& table = input.kernels->near_table(key);
   const glm::vec3 local = input.kernels->local_response(key);
-  const auto [moments, points] = open_nodes(input, receiver, open, counts.near, scratch);
+  open_nodes(input, receiver, open, open_count, scratch);
   alignas(64) float place[3][NodeTree::kLeafSlots];
   alignas(64) float result[3][NodeTree::kLeafSlots];
   const uint32_t first = NodeTree::kLeafSlots * leaf_node;
@@ -137,11 +160,9 @@ HWY_INLINE void gather_leaf(const GatherInput& input, uint32_t leaf_node, const 
   for (size_t i = 0; i < NodeTree::kLeafSlots; i += hn::Lanes(d)) {
     LeafVector leaf{hn::Load(d, place[0] + i), hn::Load(d, place[1] + i), hn::Load(d, place[2] + i), {}};
     for (V& radiosity : leaf.radiosity) radiosity = hn::Zero(d);
-    for (size_t m = 0; m < counts.leaf_moments; ++m) {
-      add_moments<kColoured>(domain, table, pack.rows + scratch.leaf_moments[m], pack.stride, leaf);
-    }
-    for (size_t m = 0; m < moments; ++m) add_moments<kColoured>(domain, table, scratch.moments[m], 4, leaf);
-    for (size_t p = 0; p < points; ++p) add_point(domain, table, input.tree->sources[scratch.points[p]], leaf);
+    add_side<kColoured>(input, table, pack, scratch.sides[kSame], leaf);
+    // What is left out near a vertex is given back for the surface around it, not for what lies behind.
+    add_side<kColoured>(input, input.kernels->far_table(), pack, scratch.sides[kOpposite], leaf);
     add_expansion(expansion, leaf);
     for (int c = 0; c < 3; ++c) hn::Store(leaf.radiosity[c], d, result[c] + i);
   }

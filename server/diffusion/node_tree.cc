@@ -18,8 +18,8 @@ struct Children {
   Four x[4], y[4], z[4];
 };
 
-/// Reads row `field` of the four blocks below block `index`, turned so that lanes are parents. Blocks past the end repeat
-/// the first.
+/// Reads row `field` of the four blocks below block `index`, turned so that lanes are parents. Blocks past the end
+/// repeat the first.
 void load_children(const NodeTree& tree, uint32_t level, uint32_t index, uint32_t field, Four (&by_child)[4]) {
   const uint32_t blocks = tree.block_count(level - 1);
   for (uint32_t j = 0; j < 4; ++j) {
@@ -46,6 +46,7 @@ void load_slots(const T* slots, uint32_t offset, uint32_t k, Four (&fields)[4]) 
 
 struct GeometryChildren : Children {
   Four area[4], spread2[4], radius[4];
+  Four facing[3][4];
 };
 
 void refit_geometry_block(const GeometryChildren& c, float* block) {
@@ -74,14 +75,19 @@ void refit_geometry_block(const GeometryChildren& c, float* block) {
   store4(block + 4 * kArea, area);
   store4(block + 4 * kSpread2, spread2 * inverse);
   store4(block + 4 * kRadius, radius);
+  for (uint32_t a = 0; a < 3; ++a) {
+    store4(block + 4 * (kFacingX + a), c.facing[a][0] + c.facing[a][1] + c.facing[a][2] + c.facing[a][3]);
+  }
 }
 
 void refit_geometry_level1(NodeTree& tree, uint32_t leaf) {
   GeometryChildren c{};
   for (uint32_t k = 0; k < 4; ++k) {
-    Four fields[4];
-    load_slots(&tree.places[size_t{16} * leaf], 0, k, fields);
-    c.x[k] = fields[0], c.y[k] = fields[1], c.z[k] = fields[2], c.area[k] = fields[3];
+    Four low[4], high[4];
+    load_slots(&tree.places[size_t{16} * leaf], 0, k, low);
+    load_slots(&tree.places[size_t{16} * leaf], 4, k, high);
+    c.x[k] = low[0], c.y[k] = low[1], c.z[k] = low[2], c.area[k] = low[3];
+    for (int a = 0; a < 3; ++a) c.facing[a][k] = high[a];
   }
   refit_geometry_block(c, tree.block(1, leaf));
 }
@@ -96,6 +102,10 @@ void refit_geometry_above(NodeTree& tree, uint32_t level, uint32_t index) {
   load_children(tree, level, index, kRadius, c.radius);
   const Four exists = parent_exists(tree, level, index);
   for (Four& area : c.area) area *= exists;
+  for (uint32_t a = 0; a < 3; ++a) {
+    load_children(tree, level, index, kFacingX + a, c.facing[a]);
+    for (Four& facing : c.facing[a]) facing *= exists;
+  }
   refit_geometry_block(c, tree.block(level, index));
 }
 
@@ -150,7 +160,8 @@ void refit_flux_block(const FluxChildren& c, bool coloured, float* block) {
     }
   }
   for (uint32_t channel = 0; channel < 3; ++channel) {
-    store4(block + 4 * (kFluxR + channel), c.flux[channel][0] + c.flux[channel][1] + c.flux[channel][2] + c.flux[channel][3]);
+    store4(block + 4 * (kFluxR + channel),
+           c.flux[channel][0] + c.flux[channel][1] + c.flux[channel][2] + c.flux[channel][3]);
   }
   for (uint32_t m = 0; m < 6; ++m) store4(block + 4 * (kCovXX + m), covariance[m] * inverse);
   if (!coloured) return;
@@ -229,7 +240,8 @@ NodeTree::NodeTree(uint32_t slot_count) : slot_count_(slot_count) {
   uint32_t top = kLeafLevel;
   while (node_count(top) > 1) ++top;
   blocks_.resize(top + 1);
-  for (uint32_t level = 1; level <= top; ++level) blocks_[level].assign(size_t{block_count(level)} * kBlockFloats, 0.0f);
+  for (uint32_t level = 1; level <= top; ++level)
+    blocks_[level].assign(size_t{block_count(level)} * kBlockFloats, 0.0f);
   places.resize(size_t{16} * leaf_count());
   sources.resize(size_t{16} * leaf_count());
   spacing_keys.resize(leaf_count());
@@ -252,7 +264,8 @@ void NodeTree::refit_flux_chunk(uint32_t chunk, bool coloured) {
   for (uint32_t leaf = first_leaf(chunk); leaf < end_leaf(*this, chunk); ++leaf) {
     refit_flux_level1(*this, leaf, coloured);
   }
-  for_blocks_of_chunk(*this, chunk, [&](uint32_t level, uint32_t index) { refit_flux_above(*this, level, index, coloured); });
+  for_blocks_of_chunk(*this, chunk,
+                      [&](uint32_t level, uint32_t index) { refit_flux_above(*this, level, index, coloured); });
 }
 
 void NodeTree::refit_flux_top(bool coloured) {

@@ -8,25 +8,40 @@
 
 namespace diaphane::diffusion {
 
-/// What a node above the vertices holds. "Centre" is weighted by area and serves tests and receivers; "flux" is about the
-/// centroid weighted by R + G + B and serves sources.
+/// What a node above the vertices holds. "Centre" is weighted by area and serves tests and receivers; "flux" is about
+/// the centroid weighted by R + G + B and serves sources.
 enum NodeField : uint32_t {
-  kCentreX, kCentreY, kCentreZ,  ///< mm
-  kArea,                         ///< mm²
-  kSpread2,                      ///< area-weighted mean square distance from the centre, mm²
-  kRadius,                       ///< no vertex is farther from the centre, mm
-  kFluxX, kFluxY, kFluxZ,        ///< flux centroid, mm
-  kFluxR, kFluxG, kFluxB,        ///< W
-  kCovXX, kCovYY, kCovZZ,        ///< covariance of the flux about its centroid, mm²
-  kCov2XY, kCov2XZ, kCov2YZ,     ///< twice its mixed terms
-  kDipole,                       ///< nine: Σ φ (y − centroid) of each channel, W·mm, three axes each
+  kCentreX,
+  kCentreY,
+  kCentreZ,  ///< mm
+  kArea,     ///< mm²
+  kSpread2,  ///< area-weighted mean square distance from the centre, mm²
+  kRadius,   ///< no vertex is farther from the centre, mm
+  kFacingX,
+  kFacingY,
+  kFacingZ,  ///< Σ area vectors, mm²: as long as kArea where all face one way
+  kFluxX,
+  kFluxY,
+  kFluxZ,  ///< flux centroid, mm
+  kFluxR,
+  kFluxG,
+  kFluxB,  ///< W
+  kCovXX,
+  kCovYY,
+  kCovZZ,  ///< covariance of the flux about its centroid, mm²
+  kCov2XY,
+  kCov2XZ,
+  kCov2YZ,  ///< twice its mixed terms
+  kDipole,  ///< nine: Σ φ (y − centroid) of each channel, W·mm, three axes each
   kNodeFields = kDipole + 9
 };
 
 /// A vertex as a receiver.
 struct Place {
   glm::vec3 position_mm{0};
-  float area_mm2 = 0;  ///< a third of its triangles' areas
+  float area_mm2 = 0;            ///< a third of its triangles' areas
+  glm::vec3 area_vector_mm2{0};  ///< a third of their area vectors, outward
+  float unused = 0;
 };
 
 /// A vertex as a source: half way between the vertex and the mean of its triangles' centroids.

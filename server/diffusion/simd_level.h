@@ -13,8 +13,8 @@ std::string simd_level();
 /// Levels that this machine runs and this program holds, best first. Thread-safe.
 std::vector<std::string> simd_levels();
 
-/// Uses `level`, or the best again where it is empty; false, with nothing changed, where it is not one of simd_levels().
-/// For tests and benches: not while anything else in the room runs.
+/// Uses `level`, or the best again where it is empty; false, with nothing changed, where it is not one of
+/// simd_levels(). For tests and benches: not while anything else in the room runs.
 bool choose_simd_level(const std::string& level);
 
 }  // namespace diaphane::diffusion

@@ -1,31 +1,60 @@
 #include "diffusion/surface_topology.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
 
-#include "glm/common.hpp"
+#include "glm/geometric.hpp"
 
 namespace diaphane::diffusion {
 namespace {
 
 constexpr uint32_t kLargestUnsplit = 4;
 
-/// A weld to be ordered: its rest position, and its name to break ties.
+/// How far, in vertex spacings, a unit normal pushes a vertex away from one that faces the other way. What is cut into
+/// leaves is eight spacings wide: the two sides of a thin sheet come apart before they would share a leaf.
+constexpr float kNormalWeight = 5.0f;
+
+/// A weld to be ordered: its rest position, its normal times a length, and its name to break ties.
 struct Point {
-  glm::vec3 position;
+  std::array<float, 6> coordinates;
   uint32_t weld;
 };
 
-int longest_axis(const Point* begin, const Point* end) {
-  glm::vec3 lowest = begin->position, highest = begin->position;
+size_t longest_axis(const Point* begin, const Point* end) {
+  std::array<float, 6> lowest = begin->coordinates, highest = begin->coordinates;
   for (const Point* p = begin; p != end; ++p) {
-    lowest = glm::min(lowest, p->position);
-    highest = glm::max(highest, p->position);
+    for (size_t a = 0; a < 6; ++a) {
+      lowest[a] = std::min(lowest[a], p->coordinates[a]);
+      highest[a] = std::max(highest[a], p->coordinates[a]);
+    }
   }
-  const glm::vec3 extent = highest - lowest;
-  int axis = extent.y > extent.x ? 1 : 0;
-  if (extent.z > extent[axis]) axis = 2;
-  return axis;
+  size_t longest = 0;
+  for (size_t a = 1; a < 6; ++a) {
+    if (highest[a] - lowest[a] > highest[longest] - lowest[longest]) longest = a;
+  }
+  return longest;
+}
+
+std::vector<Point> points_of(const geometry::MeshTopology& mesh, const std::vector<uint32_t>& vertex_of_weld) {
+  std::vector<glm::vec3> area_vectors(mesh.weld_count, glm::vec3(0));
+  std::vector<float> areas(mesh.weld_count, 0);
+  for (const glm::uvec3& t : mesh.triangles) {
+    const auto& p = mesh.uploaded_positions;
+    const glm::vec3 area_vector = glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x]) / 6.0f;
+    for (int k = 0; k < 3; ++k) {
+      area_vectors[mesh.weld_of_vertex[t[k]]] += area_vector;
+      areas[mesh.weld_of_vertex[t[k]]] += glm::length(area_vector);
+    }
+  }
+  std::vector<Point> points(mesh.weld_count);
+  for (uint32_t w = 0; w < mesh.weld_count; ++w) {
+    const glm::vec3& p = mesh.uploaded_positions[vertex_of_weld[w]];
+    const glm::vec3 lean = areas[w] > 0 ? area_vectors[w] * (kNormalWeight / std::sqrt(areas[w])) : glm::vec3(0);
+    points[w] = {{p.x, p.y, p.z, lean.x, lean.y, lean.z}, w};
+  }
+  return points;
 }
 
 /// How many of `count` > 4 points go left: a multiple of the largest power of four below `count`, near a half.
@@ -39,10 +68,10 @@ size_t left_share(size_t count) {
 
 void order(Point* begin, Point* end) {
   while (end - begin > kLargestUnsplit) {
-    const int axis = longest_axis(begin, end);
+    const size_t axis = longest_axis(begin, end);
     Point* middle = begin + left_share(static_cast<size_t>(end - begin));
     std::nth_element(begin, middle, end, [axis](const Point& a, const Point& b) {
-      return a.position[axis] != b.position[axis] ? a.position[axis] < b.position[axis] : a.weld < b.weld;
+      return a.coordinates[axis] != b.coordinates[axis] ? a.coordinates[axis] < b.coordinates[axis] : a.weld < b.weld;
     });
     order(begin, middle);
     begin = middle;
@@ -95,10 +124,7 @@ std::shared_ptr<const SurfaceTopology> build_surface_topology(std::shared_ptr<co
   surface->slot_count = surface->mesh->weld_count;
   surface->vertex_of_slot = first_vertices(*surface->mesh);
 
-  std::vector<Point> points(surface->slot_count);
-  for (uint32_t w = 0; w < surface->slot_count; ++w) {
-    points[w] = {surface->mesh->uploaded_positions[surface->vertex_of_slot[w]], w};
-  }
+  std::vector<Point> points = points_of(*surface->mesh, surface->vertex_of_slot);
   order(points.data(), points.data() + points.size());
 
   std::vector<uint32_t> slot_of_weld(surface->slot_count);

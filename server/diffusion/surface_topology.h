@@ -10,8 +10,8 @@
 
 namespace diaphane::diffusion {
 
-/// Slots are the welds of a mesh in kd order: every aligned run of 4^k slots is a compact piece of the rest pose, so the
-/// 4-ary tree over them is implicit. Depends on the uploaded positions alone. Immutable; thread-safe.
+/// Slots are the welds of a mesh in kd order: every aligned run of 4^k slots is a compact piece of the rest pose, so
+/// the 4-ary tree over them is implicit. Depends on the uploaded positions alone. Immutable; thread-safe.
 struct SurfaceTopology {
   std::shared_ptr<const geometry::MeshTopology> mesh;
   uint32_t slot_count = 0;

@@ -14,8 +14,8 @@ namespace diaphane::geometry {
 /// Answers how far a point is from the nearest crease, to an eighth of `reach_mm`.
 class CreaseField {
  public:
-  /// Creases of `mesh` at `positions_mm`: edges of the welded surface between triangles whose normals differ by more than
-  /// 30°, and edges with one triangle or more than two.
+  /// Creases of `mesh` at `positions_mm`: edges of the welded surface between triangles whose normals differ by more
+  /// than 30°, and edges with one triangle or more than two.
   CreaseField(const MeshTopology& mesh, std::span<const glm::vec3> positions_mm, float reach_mm);
 
   /// Distance in mm, or reach_mm where no crease is nearer. Thread-safe.

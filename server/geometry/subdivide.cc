@@ -104,7 +104,8 @@ class Splitter {
   absl::flat_hash_map<uint64_t, uint32_t> middle_of_edge_;
 };
 
-/// The least largest spacing that the bound on vertices allows: every edge, and every square of the surface, needs some.
+/// The least largest spacing that the bound on vertices allows: every edge, and every square of the surface, needs
+/// some.
 float least_spacing(const MeshTopology& mesh, std::span<const glm::vec3> positions_mm, uint32_t max_vertices) {
   double length = 0, area = 0;
   for (const glm::uvec3& t : mesh.triangles) {
@@ -122,11 +123,12 @@ absl::StatusOr<SubdividedMesh> subdivide(std::shared_ptr<const MeshTopology> mes
                                          std::span<const glm::vec3> positions_mm, const SubdivisionOptions& options) {
   SubdivisionOptions bounded = options;
   if (bounded.max_vertices == 0) {
-    bounded.max_vertices =
-        static_cast<uint32_t>(std::min<uint64_t>(std::max<uint64_t>(500000, uint64_t{4} * mesh->vertex_count), 1u << 31));
+    bounded.max_vertices = static_cast<uint32_t>(
+        std::min<uint64_t>(std::max<uint64_t>(500000, uint64_t{4} * mesh->vertex_count), 1u << 31));
   }
   bounded.max_vertices = std::max(bounded.max_vertices, mesh->vertex_count);
-  const float scale = std::max(1.0f, least_spacing(*mesh, positions_mm, bounded.max_vertices) / bounded.largest_spacing_mm);
+  const float scale =
+      std::max(1.0f, least_spacing(*mesh, positions_mm, bounded.max_vertices) / bounded.largest_spacing_mm);
   bounded.smallest_spacing_mm *= scale;
   bounded.largest_spacing_mm *= scale;
   while (true) {

@@ -13,12 +13,13 @@
 
 namespace diaphane::geometry {
 
-/// Spacings h in mm: an edge longer than 1.2 h is halved. h is half the distance to the nearest crease (an edge that bends
-/// by more than 30°, or has not two triangles), within these bounds.
+/// Spacings h in mm: an edge longer than 1.2 h is halved. h is half the distance to the nearest crease (an edge that
+/// bends by more than 30°, or has not two triangles), within these bounds.
 struct SubdivisionOptions {
   float smallest_spacing_mm = 0.5f;
   float largest_spacing_mm = 2;
-  /// Never more vertices than this: the spacings double until it holds. 0: the larger of 500,000 and four times the mesh.
+  /// Never more vertices than this: the spacings double until it holds. 0: the larger of 500,000 and four times the
+  /// mesh.
   uint32_t max_vertices = 0;
 };
 
@@ -28,8 +29,8 @@ struct SubdividedMesh {
   std::vector<glm::uvec2> parents;               ///< of vertex original count + i
 };
 
-/// Splits every long edge, the same on all its sides, until none is left: no T-junctions. `positions_mm` [vertex_count] are
-/// the rest pose in mm, finite within ±1e15. Thread-safe.
+/// Splits every long edge, the same on all its sides, until none is left: no T-junctions. `positions_mm` [vertex_count]
+/// are the rest pose in mm, finite within ±1e15. Thread-safe.
 absl::StatusOr<SubdividedMesh> subdivide(std::shared_ptr<const MeshTopology> mesh,
                                          std::span<const glm::vec3> positions_mm, const SubdivisionOptions& options);
 

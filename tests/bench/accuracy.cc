@@ -34,7 +34,7 @@ struct Settings {
   std::vector<float> openings;
   size_t points = 3000;
   float extent_mm = 20;
-  float smallest_spacing = 1.5f, largest_spacing = 6;
+  float smallest_spacing = 1, largest_spacing = 2;
   std::string cache;
   std::string json;
 };
@@ -98,7 +98,8 @@ std::vector<glm::vec3> truth_of(const Mesh& mesh, const std::vector<glm::vec3>& 
   const diffusion::Surfels surfels =
       diffusion::sample_surface(mesh.triangles, mesh.positions_mm, mesh.normals, irradiance, sampling);
   truth = *diffusion::reference_radiosity(dipole, surfels, receivers);
-  if (!cache_file.empty()) std::ofstream(cache_file, std::ios::binary).write(reinterpret_cast<const char*>(truth.data()), bytes);
+  if (!cache_file.empty())
+    std::ofstream(cache_file, std::ios::binary).write(reinterpret_cast<const char*>(truth.data()), bytes);
   return truth;
 }
 
@@ -130,8 +131,8 @@ std::vector<glm::vec3> values_at(const Mesh& mesh, const std::vector<testing::Su
   std::vector<glm::vec3> values;
   for (const testing::SurfacePoint& point : points) {
     const glm::uvec3& t = mesh.triangles[point.triangle];
-    const glm::vec3 normal = glm::normalize(glm::cross(mesh.positions_mm[t.y] - mesh.positions_mm[t.x],
-                                                       mesh.positions_mm[t.z] - mesh.positions_mm[t.x]));
+    const glm::vec3 normal = glm::normalize(
+        glm::cross(mesh.positions_mm[t.y] - mesh.positions_mm[t.x], mesh.positions_mm[t.z] - mesh.positions_mm[t.x]));
     const auto found = rays.locate(testing::interpolate(mesh, mesh.positions_mm, point), normal);
     if (!found) throw std::runtime_error("a point of the surface was not found on the finer surface");
     values.push_back(testing::interpolate(fine, radiosity, *found));
@@ -143,6 +144,7 @@ struct Cell {
   glm::vec3 error;     ///< RMS over mean
   float worst_of_own;  ///< largest |difference| over the point's own B, where that is above a hundredth of the mean
   float worst_of_mean;
+  glm::vec3 worst_at_mm;  ///< where that is
   size_t triangles;
   double spacing;
 };
@@ -158,24 +160,29 @@ Cell measure(const Mesh& mesh, const std::string& name, const std::string& mater
   const auto points = testing::random_points(mesh, settings.points, 1);
   std::vector<glm::vec3> receivers;
   for (const auto& point : points) receivers.push_back(testing::interpolate(mesh, mesh.positions_mm, point));
-  const std::string cache = settings.cache.empty() ? "" : settings.cache + "/" + name + "." + material_name + "." + light;
+  const std::string cache =
+      settings.cache.empty() ? "" : settings.cache + "/" + name + "." + material_name + "." + light;
   const std::vector<glm::vec3> truth = truth_of(mesh, receivers, irradiance, dipole, cache);
   const std::vector<glm::vec3> radiosity = radiosity_of(fine, irradiance, material, settings);
   const std::vector<glm::vec3> values = values_at(mesh, points, fine, radiosity);
 
-  Cell cell{testing::relative_rms(values, truth), 0, 0, fine.triangles.size(), 0};
+  Cell cell{testing::relative_rms(values, truth), 0, 0, {}, fine.triangles.size(), 0};
   glm::vec3 mean(0);
   for (const glm::vec3& b : truth) mean += b / static_cast<float>(truth.size());
   for (size_t i = 0; i < truth.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
       const float off = std::abs(values[i][c] - truth[i][c]);
-      cell.worst_of_mean = std::max(cell.worst_of_mean, off / mean[c]);
+      if (off > cell.worst_of_mean * mean[c]) {
+        cell.worst_of_mean = off / mean[c];
+        cell.worst_at_mm = receivers[i];
+      }
       if (truth[i][c] > 0.01f * mean[c]) cell.worst_of_own = std::max(cell.worst_of_own, off / truth[i][c]);
     }
   }
   double area = 0;
   for (const glm::uvec3& t : fine.triangles) {
-    area += 0.5 * glm::length(glm::cross(fine.positions_mm[t.y] - fine.positions_mm[t.x], fine.positions_mm[t.z] - fine.positions_mm[t.x]));
+    area += 0.5 * glm::length(glm::cross(fine.positions_mm[t.y] - fine.positions_mm[t.x],
+                                         fine.positions_mm[t.z] - fine.positions_mm[t.x]));
   }
   cell.spacing = std::sqrt(2 * area / static_cast<double>(fine.triangles.size())) / z;
   return cell;
@@ -184,33 +191,44 @@ Cell measure(const Mesh& mesh, const std::string& name, const std::string& mater
 int run(const Settings& settings) {
   nlohmann::json rows = nlohmann::json::array();
   std::vector<float> errors;
-  std::printf("%-10s %-10s %-6s %9s %6s | %6s %6s %6s | %8s %8s\n", "mesh", "material", "light", "triangles", "s/z", "R %",
-              "G %", "B %", "max/mean", "max/own");
+  std::printf("%-10s %-10s %-6s %9s %6s | %6s %6s %6s | %8s %8s\n", "mesh", "material", "light", "triangles", "s/z",
+              "R %", "G %", "B %", "max/mean", "max/own  at mm");
   for (const std::string& name : settings.meshes) {
     const Mesh mesh = load(name, settings.extent_mm);
     for (const std::string& material : settings.materials) {
       for (const std::string& light : settings.lights) {
         const Cell cell = measure(mesh, name, material, light, settings);
         errors.push_back(std::max({cell.error.x, cell.error.y, cell.error.z}));
-        std::printf("%-10s %-10s %-6s %9zu %6.2f | %6.2f %6.2f %6.2f | %8.1f %8.1f\n", name.c_str(), material.c_str(),
-                    light.c_str(), cell.triangles, cell.spacing, 100 * cell.error.x, 100 * cell.error.y,
-                    100 * cell.error.z, 100 * cell.worst_of_mean, 100 * cell.worst_of_own);
+        std::printf("%-10s %-10s %-6s %9zu %6.2f | %6.2f %6.2f %6.2f | %8.1f %8.1f  %.2f %.2f %.2f\n", name.c_str(),
+                    material.c_str(), light.c_str(), cell.triangles, cell.spacing, 100 * cell.error.x,
+                    100 * cell.error.y, 100 * cell.error.z, 100 * cell.worst_of_mean, 100 * cell.worst_of_own,
+                    cell.worst_at_mm.x, cell.worst_at_mm.y, cell.worst_at_mm.z);
         std::fflush(stdout);
-        rows.push_back({{"mesh", name}, {"material", material}, {"light", light}, {"triangles", cell.triangles},
+        rows.push_back({{"mesh", name},
+                        {"material", material},
+                        {"light", light},
+                        {"triangles", cell.triangles},
                         {"spacing_over_smooth_distance", cell.spacing},
                         {"relative_rms", {cell.error.x, cell.error.y, cell.error.z}},
-                        {"worst_point_over_mean", cell.worst_of_mean}, {"worst_point_over_own", cell.worst_of_own}});
+                        {"worst_point_over_mean", cell.worst_of_mean},
+                        {"worst_point_mm", {cell.worst_at_mm.x, cell.worst_at_mm.y, cell.worst_at_mm.z}},
+                        {"worst_point_over_own", cell.worst_of_own}});
       }
     }
   }
   std::sort(errors.begin(), errors.end());
   const float median = errors[errors.size() / 2], worst = errors.back();
-  std::printf("worst channel of %zu cells: median %.2f %%, worst %.2f %% (%s)\n", errors.size(), 100 * median, 100 * worst,
-              diffusion::simd_level().c_str());
+  std::printf("worst channel of %zu cells: median %.2f %%, worst %.2f %% (%s)\n", errors.size(), 100 * median,
+              100 * worst, diffusion::simd_level().c_str());
   if (!settings.json.empty()) {
-    std::ofstream(settings.json) << nlohmann::json{{"simd_level", diffusion::simd_level()}, {"points", settings.points},
-                                                   {"quality", settings.quality}, {"median", median}, {"worst", worst},
-                                                   {"cells", rows}}.dump(1) << "\n";
+    std::ofstream(settings.json) << nlohmann::json{{"simd_level", diffusion::simd_level()},
+                                                   {"points", settings.points},
+                                                   {"quality", settings.quality},
+                                                   {"median", median},
+                                                   {"worst", worst},
+                                                   {"cells", rows}}
+                                        .dump(1)
+                                 << "\n";
   }
   return 0;
 }

@@ -39,7 +39,8 @@ Mesh make_torus(float ring_radius_mm, float tube_radius_mm, int around, int acro
 /// about `spacing_mm`.
 Mesh make_cup(float radius_mm, float height_mm, float wall_mm, float spacing_mm);
 
-/// A box whose faces are grids of squares about `spacing_mm` wide, each cut in two; hard edges (vertices apart by face).
+/// A box whose faces are grids of squares about `spacing_mm` wide, each cut in two; hard edges (vertices apart by
+/// face).
 Mesh make_box(const glm::vec3& extent_mm, float spacing_mm);
 
 /// A disc in the plane z = 0 that is fine in the middle and grows outward by rings of constant ratio.

@@ -70,7 +70,8 @@ float longest_edge(const MeshTopology& mesh) {
 TEST(Subdivision, LeavesNoLongEdgeAndNoGap) {
   for (const bool shared : {false, true}) {
     const auto mesh = cube(shared);
-    const auto fine = subdivide(mesh, mesh->uploaded_positions, {.smallest_spacing_mm = 0.1f, .largest_spacing_mm = 0.3f});
+    const auto fine =
+        subdivide(mesh, mesh->uploaded_positions, {.smallest_spacing_mm = 0.1f, .largest_spacing_mm = 0.3f});
     ASSERT_TRUE(fine.ok());
     expect_closed(*fine->topology);
     EXPECT_LE(longest_edge(*fine->topology), 1.2f * 0.3f);
@@ -81,7 +82,8 @@ TEST(Subdivision, LeavesNoLongEdgeAndNoGap) {
 
 TEST(Subdivision, IsFinerAtCreases) {
   const auto mesh = cube(false);
-  const auto fine = subdivide(mesh, mesh->uploaded_positions, {.smallest_spacing_mm = 0.05f, .largest_spacing_mm = 0.4f});
+  const auto fine =
+      subdivide(mesh, mesh->uploaded_positions, {.smallest_spacing_mm = 0.05f, .largest_spacing_mm = 0.4f});
   ASSERT_TRUE(fine.ok());
   float at_crease = 0, in_middle = 10;
   for (const glm::uvec3& t : fine->topology->triangles) {
@@ -117,14 +119,16 @@ TEST(Subdivision, StaysBelowItsBoundHoweverFineItIsAsked) {
 
 TEST(Subdivision, BoundsNeedlesWithoutArea) {
   const auto mesh = build_topology({{0, 0, 0}, {1e12f, 0, 0}, {2e12f, 0, 0}}, {{0, 1, 2}});
-  const auto fine = subdivide(*mesh, (*mesh)->uploaded_positions, {.smallest_spacing_mm = 0.1f, .largest_spacing_mm = 1, .max_vertices = 1000});
+  const auto fine = subdivide(*mesh, (*mesh)->uploaded_positions,
+                              {.smallest_spacing_mm = 0.1f, .largest_spacing_mm = 1, .max_vertices = 1000});
   ASSERT_TRUE(fine.ok());
   EXPECT_LE(fine->topology->vertex_count, 1000u);
 }
 
 TEST(Subdivision, CarriesAnotherPose) {
   const auto mesh = cube(true);
-  const auto fine = subdivide(mesh, mesh->uploaded_positions, {.smallest_spacing_mm = 0.3f, .largest_spacing_mm = 0.5f});
+  const auto fine =
+      subdivide(mesh, mesh->uploaded_positions, {.smallest_spacing_mm = 0.3f, .largest_spacing_mm = 0.5f});
   std::vector<glm::vec3> moved = mesh->uploaded_positions;
   for (glm::vec3& p : moved) p = p * 2.0f + glm::vec3(1, 2, 3);
   std::vector<glm::vec3> normals(8);

@@ -16,7 +16,7 @@ void fill_attribute(const gl::Buffer& buffer, GLuint location, std::span<const g
 void GpuMesh::update(const std::shared_ptr<const geometry::MeshTopology>& topology, const geometry::PlacedShape& shape,
                      uint64_t generation, StageClock& clock) {
   const bool new_topology = topology_.lock() != topology;
-  if (!shape_memo_.renew(generation) && !new_topology) {
+  if (!shape_memo_.renew({&shape, generation}) && !new_topology) {
     clock.sleep("upload");
     return;
   }

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <utility>
 
 #include "geometry/shape.h"
 #include "geometry/topology.h"
@@ -30,7 +31,7 @@ class GpuMesh {
 
  private:
   std::weak_ptr<const geometry::MeshTopology> topology_;
-  Memo<uint64_t> shape_memo_;
+  Memo<std::pair<const geometry::PlacedShape*, uint64_t>> shape_memo_;
   Memo<uint64_t> radiosity_memo_;
   gl::VertexArray vertex_array_;
   gl::Buffer positions_;

@@ -6,6 +6,7 @@
 #include "render/cube_atlas.h"
 #include "render/gpu_mesh.h"
 #include "render/placed_mesh.h"
+#include "render/refined_mesh.h"
 #include "render/surface_light.h"
 
 namespace diaphane::render {
@@ -13,6 +14,7 @@ namespace diaphane::render {
 /// Render thread only.
 struct MeshState {
   PlacedMesh placed;
+  RefinedMesh refined;  ///< for the integral
   SurfaceLight light;
   GpuMesh gpu;
   std::optional<CubeAtlas> atlas;

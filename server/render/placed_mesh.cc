@@ -1,6 +1,14 @@
 #include "render/placed_mesh.h"
 
+#include <cmath>
+
+#include "glm/matrix.hpp"
+
 namespace diaphane::render {
+
+float PlacedMesh::unit_mm() const {
+  return static_cast<float>(millimetres_per_unit_ * std::cbrt(std::abs(glm::determinant(glm::mat3(scene_from_mesh_)))));
+}
 
 void PlacedMesh::update(const scene::Mesh& mesh, double millimetres_per_unit, StageClock& clock) {
   const bool same = topology_.lock() == mesh.topology && shape_.lock() == mesh.shape &&

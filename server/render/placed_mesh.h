@@ -18,6 +18,8 @@ class PlacedMesh {
 
   const geometry::PlacedShape& shape() const { return placed_; }
   const geometry::Bounds& bounds_mm() const { return bounds_mm_; }
+  /// Millimetres that a mesh unit is long, on average over directions.
+  float unit_mm() const;
   /// Grows whenever positions or normals in millimetres change.
   uint64_t generation() const { return generation_; }
   /// The scene let go of the mesh that this one follows.

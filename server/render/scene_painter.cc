@@ -12,8 +12,8 @@
 namespace diaphane::render {
 namespace {
 
-// Atlases beyond this are the other meshes' to lose.
-constexpr size_t kMaxAtlasBytes = size_t{1} << 30;
+// Beyond this, meshes that the frame does not show lose what was kept of them.
+constexpr size_t kMaxKeptBytes = size_t{2} << 30;
 
 const optics::Coefficients& material_of(const scene::SceneSnapshot& scene, const scene::Mesh& mesh) {
   static const optics::Coefficients kFallback;
@@ -62,17 +62,20 @@ void ScenePainter::update_shadows(Job& job) {
   });
 }
 
-void ScenePainter::bound_atlases(const Job& job) {
+void ScenePainter::bound_memory(const Job& job) {
+  const auto bytes_of = [](const MeshState& state) {
+    return state.light.bytes() + (state.atlas.has_value() ? state.atlas->bytes() : 0);
+  };
   size_t bytes = 0;
-  for (const auto& [name, state] : meshes_) bytes += state.atlas.has_value() ? state.atlas->bytes() : 0;
-  for (auto& [name, state] : meshes_) {
-    if (bytes <= kMaxAtlasBytes) return;
-    const bool busy =
-        std::any_of(job.meshes.begin(), job.meshes.end(), [&](const DrawnMesh& d) { return d.state == &state; });
-    if (busy || !state.atlas.has_value()) continue;
-    bytes -= state.atlas->bytes();
-    state.atlas.reset();
-  }
+  for (const auto& [name, state] : meshes_) bytes += bytes_of(state);
+  std::erase_if(meshes_, [&](const auto& entry) {
+    const MeshState& state = entry.second;
+    if (bytes <= kMaxKeptBytes) return false;
+    const auto draws = [&](const DrawnMesh& drawn) { return drawn.state == &state; };
+    if (std::any_of(job.meshes.begin(), job.meshes.end(), draws)) return false;
+    bytes -= bytes_of(state);
+    return true;
+  });
 }
 
 void ScenePainter::update_atlas(const DrawnMesh& drawn, Job& job) {
@@ -101,18 +104,22 @@ absl::Status ScenePainter::update(Job& job) {
   for (const DrawnMesh& drawn : job.meshes) {
     if (absl::Status status = check(job.cancelled); !status.ok()) return status;
     MeshState& state = *drawn.state;
-    state.gpu.update(drawn.mesh->topology, state.placed.shape(), state.placed.generation(), job.clock);
     if (settings.technique == Technique::kIntegral) {
-      state.light.update(drawn.mesh->topology,
-                         {state.placed, job.lights, drawn.material, settings.quality, shadowed ? &shadows_ : nullptr,
-                          shadowed ? shadows_generation_ : 0},
+      const RefinedMesh& refined = state.refined;
+      absl::Status status = state.refined.update(drawn.mesh->topology, state.placed, drawn.material, job.clock);
+      if (!status.ok()) return status;
+      state.light.update(refined.topology(),
+                         {refined.shape(), refined.generation(), job.lights, drawn.material, settings.quality,
+                          shadowed ? &shadows_ : nullptr, shadowed ? shadows_generation_ : 0},
                          job.clock);
+      state.gpu.update(refined.topology(), refined.shape(), refined.generation(), job.clock);
       state.gpu.update_radiosity(state.light.radiosity(), state.light.generation(), job.clock);
-    } else if (settings.technique == Technique::kPaper) {
-      update_atlas(drawn, job);
+    } else {
+      state.gpu.update(drawn.mesh->topology, state.placed.shape(), state.placed.generation(), job.clock);
+      if (settings.technique == Technique::kPaper) update_atlas(drawn, job);
     }
   }
-  bound_atlases(job);
+  bound_memory(job);
   return absl::OkStatus();
 }
 

@@ -38,7 +38,7 @@ class ScenePainter {
   };
 
   void gather_meshes(Job& job);
-  void bound_atlases(const Job& job);
+  void bound_memory(const Job& job);
   void update_shadows(Job& job);
   absl::Status update(Job& job);
   void update_atlas(const DrawnMesh& drawn, Job& job);

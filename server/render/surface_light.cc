@@ -18,8 +18,8 @@ void SurfaceLight::update(const std::shared_ptr<const geometry::MeshTopology>& t
   } else {
     clock.sleep("order");
   }
-  const uint64_t placed = inputs.placed.generation();
-  const geometry::PlacedShape& shape = inputs.placed.shape();
+  const uint64_t placed = inputs.shape_generation;
+  const geometry::PlacedShape& shape = inputs.shape;
   const float refractive_index = inputs.material.refractive_index;
   const Materials material{inputs.material.absorption_mm, inputs.material.reduced_scattering_mm, refractive_index};
   const auto stage = [&](std::string_view name, bool stale, auto&& work) {

@@ -9,7 +9,7 @@
 #include "diffusion/dipole_integral.h"
 #include "render/irradiance.h"
 #include "render/memo.h"
-#include "render/placed_mesh.h"
+#include "render/stage_clock.h"
 
 namespace diaphane::render {
 
@@ -18,7 +18,8 @@ namespace diaphane::render {
 class SurfaceLight {
  public:
   struct Inputs {
-    const PlacedMesh& placed;
+    const geometry::PlacedShape& shape;
+    uint64_t shape_generation;
     std::span<const LightStorage> lights;
     const optics::Coefficients& material;
     diffusion::Quality quality;
@@ -32,6 +33,8 @@ class SurfaceLight {
   std::span<const glm::vec3> radiosity() const { return radiosity_; }
   /// E of the last update, at triangles and vertices.
   const SurfaceIrradiance& irradiance() const { return irradiance_.result(); }
+  /// Memory that the integral holds.
+  size_t bytes() const { return integral_ == nullptr ? 0 : integral_->bytes(); }
   /// Grows whenever radiosity changes.
   uint64_t generation() const { return generation_; }
 
@@ -46,12 +49,12 @@ class SurfaceLight {
   uint64_t generation_ = 0;
 
   // What each stage reads, in the order in which they run.
-  Memo<uint64_t> refit_reads_;                                                          // place
-  Memo<std::tuple<uint64_t, std::vector<LightStorage>, float, uint64_t>> light_reads_;  // place, lights, η, shadows
-  Memo<std::tuple<uint64_t, uint64_t>> flux_reads_;                                     // place, irradiance
+  Memo<uint64_t> refit_reads_;                                                          // shape
+  Memo<std::tuple<uint64_t, std::vector<LightStorage>, float, uint64_t>> light_reads_;  // shape, lights, η, shadows
+  Memo<std::tuple<uint64_t, uint64_t>> flux_reads_;                                     // shape, irradiance
   Memo<Materials> material_reads_;
   Memo<std::tuple<uint64_t, uint64_t, Materials, diffusion::Quality>>
-      gather_reads_;  // place, irradiance, material, quality
+      gather_reads_;  // shape, irradiance, material, quality
 };
 
 }  // namespace diaphane::render

@@ -28,7 +28,8 @@ namespace fs = std::filesystem;
 constexpr double kHeightMm = 10;   // some twelve mean free paths of the wax
 constexpr float kRadiance = 0.6f;  // W·mm⁻²·sr⁻¹ of a white wall as far from the light as the middle of the body
 constexpr float kExposureEv = 3.5f;  // what comes through the body is far darker than the wall
-constexpr float kGlobalGain = 30;  // the paper's global term is dark beyond a few mean free paths; this shows its shape
+constexpr float kGlobalGain =
+    250;  // the paper's global term is dark beyond a few mean free paths; this shows its shape
 
 struct Options {
   fs::path mesh;
@@ -117,9 +118,9 @@ absl::Status run(const Options& options) {
   // The sphere must fit too: it is what the mesh becomes.
   render.camera = frame_camera({{c.x - r, c.y - r, c.z - r}, {c.x + r, c.y + r, c.z + r}},
                                {.aspect = static_cast<float>(render.size.width_px) / render.size.height_px, .fill = 1});
-  // Behind and a little above, near the body but outside the sphere.
+  // Behind, where what faces the camera does not face it, near the body but outside the sphere.
   const PointLight light = [&] {
-    const float y = 0.9f * r;
+    const float y = 0.2f * r;
     const float z = -1.05f * r;
     const double distance_mm = std::hypot(y, z) * millimetres_per_unit;
     const auto intensity = static_cast<float>(kRadiance * M_PI * distance_mm * distance_mm);
@@ -155,7 +156,7 @@ absl::Status run(const Options& options) {
     if (const auto frame = scene->render(first); !frame.ok()) return frame.status();
   }
 
-  std::vector<fs::path> pictures;
+  std::vector<fs::path> pictures;  // of the contact sheet: every other frame, paper beside integral
   Seconds integral_seconds{0};
   for (uint32_t i = 0; i < options.frames; ++i) {
     const float t = options.frames > 1 ? static_cast<float>(i) / static_cast<float>(options.frames - 1) : 0;
@@ -168,10 +169,11 @@ absl::Status run(const Options& options) {
     integral_seconds += std::chrono::steady_clock::now() - start;
     const absl::StatusOr<RenderedFrame> paper_frame = scene->render(paper);
     if (!paper_frame.ok()) return paper_frame.status();
-    pictures.push_back(options.folder / fmt::format("paper_{:03}.png", i));
-    if (absl::Status saved = save(*paper_frame, pictures.back()); !saved.ok()) return saved;
-    pictures.push_back(options.folder / fmt::format("integral_{:03}.png", i));
-    if (absl::Status saved = save(*integral_frame, pictures.back()); !saved.ok()) return saved;
+    const fs::path paper_path = options.folder / fmt::format("paper_{:03}.png", i);
+    if (absl::Status saved = save(*paper_frame, paper_path); !saved.ok()) return saved;
+    const fs::path integral_path = options.folder / fmt::format("integral_{:03}.png", i);
+    if (absl::Status saved = save(*integral_frame, integral_path); !saved.ok()) return saved;
+    if (i % 2 == 0) pictures.insert(pictures.end(), {paper_path, integral_path});
     show_progress(i + 1, options.frames);
   }
 

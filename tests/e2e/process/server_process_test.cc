@@ -11,6 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "diaphane/v1/scene_service.grpc.pb.h"
+#include "grpcpp/grpcpp.h"
+
 extern char** environ;
 
 namespace {
@@ -122,6 +125,29 @@ TEST(ServerProcess, OutlivesItsStandardInputOtherwise) {
   EXPECT_THAT(server.read_line(), MatchesRegex(kReady));
   server.send(SIGTERM);
   EXPECT_EQ(server.wait(), 0);
+}
+
+TEST(ServerProcess, EndsWithZeroWithCallsInFlight) {
+  Process server({"--listen", "127.0.0.1:0", "--warm", "none", "--drain-seconds", "0.1"});
+  const std::string line = server.read_line();
+  ASSERT_THAT(line, MatchesRegex(kReady));
+  const auto channel = grpc::CreateChannel(line.substr(line.rfind(' ') + 1), grpc::InsecureChannelCredentials());
+  const auto stub = diaphane::v1::SceneService::NewStub(channel);
+  diaphane::v1::Scene scene;
+  {
+    grpc::ClientContext context;
+    ASSERT_TRUE(stub->CreateScene(&context, {}, &scene).ok());
+  }
+  // Uploads that never end.
+  std::array<grpc::ClientContext, 3> contexts;
+  std::array<diaphane::v1::MeshResponse, 3> responses;
+  std::vector<std::unique_ptr<grpc::ClientWriter<diaphane::v1::UploadMeshRequest>>> uploads;
+  for (size_t i = 0; i < contexts.size(); ++i) {
+    uploads.push_back(stub->UploadMesh(&contexts[i], &responses[i]));
+  }
+  server.send(SIGTERM);
+  EXPECT_EQ(server.wait(), 0);
+  for (const auto& upload : uploads) EXPECT_FALSE(upload->Finish().ok());
 }
 
 TEST(ServerProcess, LogsNothingWhenAllIsWellAtTheErrorLevel) {

@@ -62,7 +62,11 @@ TEST_F(LifecycleTest, CancelsWhatOutlastsTheDrain) {
   Context context;
   v1::MeshResponse response;
   const auto stalled = scenes_->UploadMesh(&context, &response);
-  stalled->Write({});
+  v1::UploadMeshRequest part;
+  *part.mutable_header() = TestMesh().header(scene, create_material(scene));
+  const uint64_t bytes = server_->scenes().mesh_bytes();
+  ASSERT_TRUE(stalled->Write(part));
+  while (server_->scenes().mesh_bytes() == bytes) std::this_thread::yield();
   server_->stop(absl::Milliseconds(10));
   caller.join();
   EXPECT_FALSE(stalled->Finish().ok());

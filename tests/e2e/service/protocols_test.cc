@@ -51,6 +51,21 @@ TEST_F(ProtocolsTest, ReflectionListsTheServices) {
   }
 }
 
+TEST_F(ProtocolsTest, SurvivesBytesThatAreNoMessage) {
+  for (const char* method : {"/diaphane.v1.SceneService/CreateScene", "/diaphane.v1.SceneService/UploadMesh",
+                             "/diaphane.v1.RenderService/RenderFrame"}) {
+    RawCall call(channel(), method, "\xff\xff\xff\xff");
+    EXPECT_FALSE(call.status().ok()) << method;
+  }
+  EXPECT_EQ(create_scene().revision(), 1u);
+}
+
+TEST_F(ProtocolsTest, RefusesTextThatIsNotUtf8) {
+  // CreateSceneRequest.scene.display_name of one byte.
+  RawCall call(channel(), "/diaphane.v1.SceneService/CreateScene", "\x0a\x03\x12\x01\xff");
+  EXPECT_FALSE(call.status().ok());
+}
+
 TEST_F(ProtocolsTest, StopsAtTheDrainsEndWithAWatcherConnected) {
   RawCall watch(channel(), kWatch, health_of(""));
   ASSERT_EQ(watch.first_answer(), kServing);

@@ -110,6 +110,47 @@ TEST_F(ResourcesTest, ListsScenesPageByPage) {
   EXPECT_THAT(sizes, ElementsAre(2, 2, 1));
 }
 
+TEST_F(ResourcesTest, ListsWhatASceneHolds) {
+  const std::string scene = create_scene().name();
+  const v1::Mesh mesh = create_mesh(scene);
+  const std::string other = create_material(scene, "skin1");
+  Context contexts[3];
+  v1::ListMaterialsRequest materials_of;
+  materials_of.set_parent(scene);
+  v1::ListMaterialsResponse materials;
+  ASSERT_TRUE(scenes_->ListMaterials(&contexts[0], materials_of, &materials).ok());
+  ASSERT_EQ(materials.materials_size(), 2);
+  EXPECT_EQ(materials.materials(1).name(), other);
+  v1::ListMeshesRequest meshes_of;
+  meshes_of.set_parent(scene);
+  v1::ListMeshesResponse meshes;
+  ASSERT_TRUE(scenes_->ListMeshes(&contexts[1], meshes_of, &meshes).ok());
+  ASSERT_EQ(meshes.meshes_size(), 1);
+  EXPECT_EQ(meshes.meshes(0).SerializeAsString(), mesh.SerializeAsString());
+  v1::ListLightsRequest lights_of;
+  lights_of.set_parent(scene);
+  v1::ListLightsResponse lights;
+  ASSERT_TRUE(scenes_->ListLights(&contexts[2], lights_of, &lights).ok());
+  EXPECT_EQ(lights.lights_size(), 0);
+}
+
+TEST_F(ResourcesTest, GivesAMeshAnotherMaterial) {
+  const std::string scene = create_scene().name();
+  v1::UpdateMeshRequest request;
+  *request.mutable_mesh() = create_mesh(scene);
+  const uint64_t positions_revision = request.mesh().positions_revision();
+  request.mutable_mesh()->set_material(create_material(scene, "skin1"));
+  request.mutable_mesh()->set_scene_from_mesh(0, 9);
+  request.mutable_update_mask()->add_paths("material");
+  Context context;
+  v1::MeshResponse response;
+  ASSERT_TRUE(scenes_->UpdateMesh(&context, request, &response).ok());
+  EXPECT_EQ(response.mesh().material(), request.mesh().material());
+  EXPECT_EQ(response.mesh().scene_from_mesh(0), 1);
+  EXPECT_EQ(response.mesh().positions_revision(), positions_revision);
+  EXPECT_EQ(response.scene_revision(), 5u);
+}
+
 TEST_F(ResourcesTest, DeletesASceneWithAllThatIsInIt) {
   const std::string scene = create_scene().name();
   const v1::Mesh mesh = create_mesh(scene);

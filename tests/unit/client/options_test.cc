@@ -89,7 +89,7 @@ TEST_F(RenderOptionsTest, NameTheFlagAndTheValue) {
   EXPECT_THAT(complaint({"a.ply"}), HasSubstr("-o"));
   EXPECT_THAT(complaint({"a.ply", "-o", "o.png", "--kernel", "0"}), HasSubstr("--kernel"));
   EXPECT_THAT(complaint({"a.ply", "-o", "o.png", "--technique", "magic"}),
-              AllOf(HasSubstr("--technique"), HasSubstr("paper | lambert")));
+              AllOf(HasSubstr("--technique"), HasSubstr("integral | paper | reference | lambert")));
   EXPECT_THAT(complaint({"a.ply", "-o", "o.png", "--height-mm", "0"}), HasSubstr("--height-mm"));
 }
 

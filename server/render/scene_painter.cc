@@ -22,6 +22,14 @@ const optics::Coefficients& material_of(const scene::SceneSnapshot& scene, const
   return found == scene.materials.end() ? kFallback : found->coefficients;
 }
 
+// What the expansions of the integral take in float.
+constexpr float kLargestIntegral_mm = 1e7f;
+
+bool beyond(const geometry::Bounds& bounds_mm, float limit_mm) {
+  const glm::vec3 farthest = glm::max(glm::abs(bounds_mm.lowest), glm::abs(bounds_mm.highest));
+  return !(std::max({farthest.x, farthest.y, farthest.z}) <= limit_mm);
+}
+
 absl::Status check(const std::atomic<bool>& cancelled) {
   return cancelled.load() ? absl::CancelledError("the frame was cancelled while it was drawn") : absl::OkStatus();
 }
@@ -99,6 +107,10 @@ absl::Status ScenePainter::update(Job& job) {
   const RenderSettings& settings = job.request.settings;
   const bool shadowed =
       settings.shadows && (settings.technique == Technique::kIntegral || settings.technique == Technique::kReference);
+  if (settings.technique == Technique::kIntegral && beyond(job.bounds_mm, kLargestIntegral_mm)) {
+    return absl::FailedPreconditionError(fmt::format("{}: the integral takes bodies within ±{:g} mm of the origin",
+                                                     job.request.scene->name, kLargestIntegral_mm));
+  }
   if (shadowed) update_shadows(job);
   shading_.bind(std::span<const LightStorage>(job.lights));
   for (const DrawnMesh& drawn : job.meshes) {

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
+#include "glm/gtc/matrix_transform.hpp"
 #include "render/gl_renderer.h"
 #include "tests/gl/render/scenes.h"
 
@@ -74,6 +76,140 @@ TEST_F(Renderer, DrawsTheBodyInTheMiddleAndNothingAround) {
 TEST_F(Renderer, LeavesTheSceneWithoutMeshesToTheCaller) {
   FrameRequest request = request_of(std::make_shared<scene::SceneSnapshot>());
   EXPECT_EQ(renderer_->render(request, kNotCancelled).status().code(), absl::StatusCode::kFailedPrecondition);
+}
+
+TEST_F(Renderer, RefusesTheIntegralOfABodyTooFarAway) {
+  const auto scene = marble_box();
+  auto mesh = std::make_shared<scene::Mesh>(*scene->meshes[0]);
+  mesh->scene_from_mesh[3] = glm::vec4(2e7f, 0, 0, 1);
+  auto far = std::make_shared<scene::SceneSnapshot>(*scene);
+  far->meshes[0] = mesh;
+  FrameRequest request = request_of(far);
+  request.settings.technique = Technique::kIntegral;
+  EXPECT_EQ(renderer_->render(request, kNotCancelled).status().code(), absl::StatusCode::kFailedPrecondition);
+}
+
+TEST_F(Renderer, IntegralSleepsUntilWhatAStageReadsChanges) {
+  const auto scene = marble_box();
+  FrameRequest request = request_of(scene);
+  request.settings.technique = Technique::kIntegral;
+  render(request);
+  request.camera.eye = {10, 0, 60};
+  auto stages = ran(render(request));
+  for (const char* stage : {"place", "refine", "order", "shadow", "refit", "irradiance", "flux", "gather", "upload"}) {
+    EXPECT_FALSE(stages.at(stage)) << stage;
+  }
+  EXPECT_TRUE(stages.at("draw"));
+
+  auto other_material = std::make_shared<scene::SceneSnapshot>(*scene);
+  other_material->materials[0].coefficients.absorption_mm = {0.0025f, 0.0045f, 0.0075f};
+  request.scene = other_material;
+  stages = ran(render(request));
+  EXPECT_FALSE(stages.at("refit"));
+  EXPECT_FALSE(stages.at("irradiance")) << "irradiance does not depend on absorption";
+  EXPECT_TRUE(stages.at("gather"));
+
+  auto moved_light = std::make_shared<scene::SceneSnapshot>(*other_material);
+  std::get<scene::PointLight>(moved_light->lights[0].kind).position.x += 5;
+  request.scene = moved_light;
+  stages = ran(render(request));
+  EXPECT_FALSE(stages.at("refit"));
+  EXPECT_TRUE(stages.at("irradiance"));
+  EXPECT_TRUE(stages.at("gather"));
+}
+
+TEST_F(Renderer, IntegralDoesNotCareWhereOrHowTheSceneIsTurned) {
+  const auto scene = marble_box();
+  FrameRequest request = request_of(scene);
+  request.settings.technique = Technique::kIntegral;
+  request.format = PixelFormat::kLinearFloat;
+  const auto still = std::get<base::ImageF>(render(request).image).values;
+
+  const glm::mat4 turn = glm::rotate(glm::translate(glm::mat4(1), {30, -20, 10}), 0.7f, glm::vec3(0.6f, 0.8f, 0));
+  const auto moved = [&](const glm::vec3& p) { return glm::vec3(turn * glm::vec4(p, 1)); };
+  auto turned = std::make_shared<scene::SceneSnapshot>(*scene);
+  auto mesh = std::make_shared<scene::Mesh>(*scene->meshes[0]);
+  mesh->scene_from_mesh = turn;
+  turned->meshes[0] = mesh;
+  glm::vec3& light = std::get<scene::PointLight>(turned->lights[0].kind).position;
+  light = moved(light);
+  request.scene = turned;
+  request.camera.eye = moved(request.camera.eye);
+  request.camera.target = moved(request.camera.target);
+  request.camera.up = glm::vec3(turn * glm::vec4(request.camera.up, 0));
+  const auto after = std::get<base::ImageF>(render(request).image).values;
+  double difference = 0;
+  double sum = 0;
+  for (size_t i = 0; i < still.size(); ++i) {
+    // A pixel at the silhouette may fall on either side.
+    if (still[i - i % 4 + 3] != after[i - i % 4 + 3]) continue;
+    difference += std::abs(still[i] - after[i]);
+    sum += still[i];
+  }
+  EXPECT_LT(difference, 0.003 * sum);
+}
+
+TEST_F(Renderer, IntegralOfADeformedBodyReturnsToTheSameBytes) {
+  const auto scene = marble_box();
+  FrameRequest request = request_of(scene);
+  request.settings.technique = Technique::kIntegral;
+  const auto first = std::get<base::Image8>(render(request).image).rgba;
+  auto deformed = std::make_shared<scene::SceneSnapshot>(*scene);
+  auto mesh = std::make_shared<scene::Mesh>(*scene->meshes[0]);
+  auto shape = std::make_shared<geometry::MeshShape>(*mesh->shape);
+  for (glm::vec3& p : shape->positions) p.x *= 1.5f;
+  mesh->shape = shape;
+  deformed->meshes[0] = mesh;
+  request.scene = deformed;
+  EXPECT_NE(std::get<base::Image8>(render(request).image).rgba, first);
+  request.scene = scene;
+  EXPECT_EQ(std::get<base::Image8>(render(request).image).rgba, first);
+}
+
+TEST_F(Renderer, ShadowsOfOneMeshFallOnAnother) {
+  auto scene = make_scene(make_box({10, 10, 2}, 8), "marble");
+  add_point_light(*scene, {0, 0, 40}, 4000);
+  auto shade = std::make_shared<scene::Mesh>(*scene->meshes[0]);
+  shade->name = "scenes/test/meshes/shade";
+  shade->scene_from_mesh[3] = glm::vec4(0, 0, 20, 1);
+  scene->meshes.push_back(shade);
+  FrameRequest request = request_of(scene);
+  request.settings.technique = Technique::kIntegral;
+  request.camera.eye = {25, 0, 12};
+  request.format = PixelFormat::kLinearFloat;
+  const auto mean = [&] {
+    const auto values = std::get<base::ImageF>(render(request).image).values;
+    double sum = 0;
+    for (const float v : values) sum += v;
+    return sum;
+  };
+  const double shadowed = mean();
+  request.settings.shadows = false;
+  EXPECT_LT(shadowed, mean());
+}
+
+TEST_F(Renderer, DirectionalAndSpotLightsReachTheBody) {
+  auto scene = make_scene(make_box({10, 10, 10}, 8), "marble");
+  scene->lights.push_back({"scenes/test/lights/d", scene::DirectionalLight{{0, 0, -1}, glm::vec3(3)}});
+  FrameRequest request = request_of(scene);
+  request.format = PixelFormat::kLinearFloat;
+  const auto centre = [&](Technique technique) {
+    request.settings.technique = technique;
+    return std::get<base::ImageF>(render(request).image).values[4 * (32 * 96 + 48)];
+  };
+  const float directional = centre(Technique::kIntegral);
+  EXPECT_GT(directional, 0.1f);
+  EXPECT_GT(centre(Technique::kPaper), 0);
+
+  auto spot = std::make_shared<scene::SceneSnapshot>(*scene);
+  spot->lights[0].kind = scene::SpotLight{{{0, 0, 1000}, glm::vec3(3e6f)}, {0, 0, -1}, 20, 30};
+  request.scene = spot;
+  EXPECT_NEAR(centre(Technique::kIntegral) / directional, 1, 0.03) << "far away, a spot is a directional light";
+
+  auto elsewhere = std::make_shared<scene::SceneSnapshot>(*spot);
+  std::get<scene::SpotLight>(elsewhere->lights[0].kind).direction = {1, 0, 0};
+  request.scene = elsewhere;
+  EXPECT_EQ(centre(Technique::kIntegral), 0);
 }
 
 TEST_F(Renderer, StopsWhenCancelled) {

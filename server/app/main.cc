@@ -13,7 +13,7 @@ namespace {
 
 int run(const Options& options) {
   base::set_log_level(options.log_level);
-  log_grpc_messages();
+  log_library_messages();
   raise_file_limit();
   auto server = Server::start(options.server, [&] { return render::make_gl_renderer(options.renderer); });
   if (!server.ok()) {

@@ -2,13 +2,16 @@
 
 #include <sys/resource.h>
 
+#include <string>
+
 #include "base/log.h"
+#include "google/protobuf/stubs/logging.h"
 #include "grpc/support/log.h"
 
 namespace diaphane::app {
 namespace {
 
-void log_message(gpr_log_func_args* args) {
+void log_grpc_message(gpr_log_func_args* args) {
   switch (args->severity) {
     case GPR_LOG_SEVERITY_ERROR:
       return spdlog::warn("grpc: {}", args->message);
@@ -17,6 +20,10 @@ void log_message(gpr_log_func_args* args) {
     case GPR_LOG_SEVERITY_DEBUG:
       return spdlog::debug("grpc: {}", args->message);
   }
+}
+
+void log_protobuf_message(google::protobuf::LogLevel, const char*, int, const std::string& message) {
+  spdlog::debug("protobuf: {}", message);
 }
 
 }  // namespace
@@ -28,6 +35,9 @@ void raise_file_limit() {
   if (setrlimit(RLIMIT_NOFILE, &limit) != 0) spdlog::warn("open files stay limited limit={}", limit.rlim_cur);
 }
 
-void log_grpc_messages() { gpr_set_log_function(log_message); }
+void log_library_messages() {
+  gpr_set_log_function(log_grpc_message);
+  google::protobuf::SetLogHandler(log_protobuf_message);
+}
 
 }  // namespace diaphane::app

@@ -6,7 +6,8 @@ namespace diaphane::app {
 /// As many open files as the system allows: a gRPC listener that ran out of them does not come back.
 void raise_file_limit();
 
-/// Sends gRPC's own messages to the log.
-void log_grpc_messages();
+/// Sends what gRPC and protobuf print by themselves to the log. Protobuf's goes to debug: a client's bytes can cause
+/// it.
+void log_library_messages();
 
 }  // namespace diaphane::app

@@ -25,11 +25,11 @@ namespace {
 using namespace diaphane;
 namespace fs = std::filesystem;
 
-constexpr double kHeightMm = 10;   // some twelve mean free paths of the wax
+constexpr double kHeightMm = 14;   // some sixteen mean free paths of the wax
 constexpr float kRadiance = 0.6f;  // W·mm⁻²·sr⁻¹ of a white wall as far from the light as the middle of the body
-constexpr float kExposureEv = 3.5f;  // what comes through the body is far darker than the wall
-constexpr float kGlobalGain =
-    250;  // the paper's global term is dark beyond a few mean free paths; this shows its shape
+constexpr float kExposureEv = 3.7f;  // what comes through the body is far darker than the wall
+// The paper's global term is dark beyond a few mean free paths; this shows its shape.
+constexpr float kGlobalGain = 1000;
 
 struct Options {
   fs::path mesh;
@@ -114,14 +114,16 @@ absl::Status run(const Options& options) {
   RenderOptions render;
   char x = 0;
   std::istringstream size(options.size);
-  size >> render.size.width_px >> x >> render.size.height_px;
+  if (!(size >> render.size.width_px >> x >> render.size.height_px) || x != 'x' || render.size.height_px == 0) {
+    return absl::InvalidArgumentError(fmt::format("--size: must be WxH, got '{}'", options.size));
+  }
   // The sphere must fit too: it is what the mesh becomes.
   render.camera = frame_camera({{c.x - r, c.y - r, c.z - r}, {c.x + r, c.y + r, c.z + r}},
                                {.aspect = static_cast<float>(render.size.width_px) / render.size.height_px, .fill = 1});
   // Behind, where what faces the camera does not face it, near the body but outside the sphere.
   const PointLight light = [&] {
-    const float y = 0.2f * r;
-    const float z = -1.05f * r;
+    const float y = 0.35f * r;
+    const float z = -1.02f * r;
     const double distance_mm = std::hypot(y, z) * millimetres_per_unit;
     const auto intensity = static_cast<float>(kRadiance * M_PI * distance_mm * distance_mm);
     return PointLight{{c.x, c.y + y, c.z + z}, {intensity, intensity, intensity}};
@@ -156,7 +158,8 @@ absl::Status run(const Options& options) {
     if (const auto frame = scene->render(first); !frame.ok()) return frame.status();
   }
 
-  std::vector<fs::path> pictures;  // of the contact sheet: every other frame, paper beside integral
+  std::vector<fs::path> paper_pictures;
+  std::vector<fs::path> integral_pictures;
   Seconds integral_seconds{0};
   for (uint32_t i = 0; i < options.frames; ++i) {
     const float t = options.frames > 1 ? static_cast<float>(i) / static_cast<float>(options.frames - 1) : 0;
@@ -169,20 +172,21 @@ absl::Status run(const Options& options) {
     integral_seconds += std::chrono::steady_clock::now() - start;
     const absl::StatusOr<RenderedFrame> paper_frame = scene->render(paper);
     if (!paper_frame.ok()) return paper_frame.status();
-    const fs::path paper_path = options.folder / fmt::format("paper_{:03}.png", i);
-    if (absl::Status saved = save(*paper_frame, paper_path); !saved.ok()) return saved;
-    const fs::path integral_path = options.folder / fmt::format("integral_{:03}.png", i);
-    if (absl::Status saved = save(*integral_frame, integral_path); !saved.ok()) return saved;
-    if (i % 2 == 0) pictures.insert(pictures.end(), {paper_path, integral_path});
+    paper_pictures.push_back(options.folder / fmt::format("paper_{:03}.png", i));
+    if (absl::Status saved = save(*paper_frame, paper_pictures.back()); !saved.ok()) return saved;
+    integral_pictures.push_back(options.folder / fmt::format("integral_{:03}.png", i));
+    if (absl::Status saved = save(*integral_frame, integral_pictures.back()); !saved.ok()) return saved;
     show_progress(i + 1, options.frames);
   }
 
   const fs::path sheet = options.folder / "contact_sheet.png";
-  if (const std::string error = examples::write_contact_sheet(pictures, 256, sheet); !error.empty()) {
+  const std::string error = examples::write_contact_sheet({integral_pictures, paper_pictures}, 192, sheet);
+  if (!error.empty()) {
     return absl::DataLossError(fmt::format("{}: {}", sheet.string(), error));
   }
   std::cout << fmt::format(
-      "{} frames by each technique, and contact_sheet.png (paper | integral), in {}: {:.1f} frames per second, new "
+      "{} frames by each technique, and contact_sheet.png (integral above, paper below), in {}: {:.1f} frames per "
+      "second, new "
       "positions in each\n",
       options.frames, options.folder.string(), options.frames / integral_seconds.count());
   return absl::OkStatus();

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "render/gl_renderer.h"
 #include "tests/gl/render/scenes.h"
@@ -66,7 +67,10 @@ TEST_P(Truth, IntegralFine) { expect_within({Technique::kIntegral, diffusion::Qu
 
 TEST_P(Truth, IntegralNormal) { expect_within({Technique::kIntegral, diffusion::Quality::kNormal, 0.020f, 0.020f}); }
 
-TEST_P(Truth, Reference) { expect_within({Technique::kReference, diffusion::Quality::kNormal, 0.008f, 0.008f}); }
+TEST_P(Truth, Reference) {
+  if (std::getenv("DIAPHANE_SLOW_TESTS") == nullptr) GTEST_SKIP() << "takes minutes: ./dev bench truth runs it";
+  expect_within({Technique::kReference, diffusion::Quality::kNormal, 0.008f, 0.008f});
+}
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Truth,
                          ::testing::Values("sphere_skin1_side", "slab_marble_back", "bunny20_marble_front"),

@@ -214,6 +214,7 @@ ServerInfo from_proto(const v1::ServerInfo& message) {
           .software_rendering = message.software_rendering(),
           .context_reason = message.context_reason(),
           .max_pixels = limits.max_pixels(),
+          .max_reference_pixels = limits.max_reference_pixels(),
           .max_vertices_per_mesh = limits.max_vertices_per_mesh(),
           .max_triangles_per_mesh = limits.max_triangles_per_mesh(),
           .max_scenes = limits.max_scenes(),

@@ -51,6 +51,7 @@ absl::Status run_with_retries(const RetryPolicy& policy,
       const std::stop_callback cancel(policy.stop, [&context] { context.TryCancel(); });
       status = attempt(context);
     }
+    if (policy.stop.stop_requested() && !status.ok()) return absl::CancelledError("stopped");
     // An attempt that still waits for a connection when the time is over does not know why there is none.
     if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED && !unavailable.ok()) return to_absl(unavailable);
     if (!may_repeat(status.error_code()) || Clock::now() >= last_retry) return to_absl(status);

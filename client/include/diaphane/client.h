@@ -33,7 +33,8 @@ struct ServerInfo {
   bool software_rendering = false;
   std::string context_reason;  ///< how the GL context was found, and why this one
 
-  uint64_t max_pixels = 0;  ///< of one frame
+  uint64_t max_pixels = 0;            ///< of one frame
+  uint64_t max_reference_pixels = 0;  ///< of one frame by the reference technique
   uint32_t max_vertices_per_mesh = 0;
   uint32_t max_triangles_per_mesh = 0;
   uint32_t max_scenes = 0;

@@ -70,6 +70,12 @@ TEST_F(ClientTest, RepeatsAnUploadThatFoundNoServerUnderTheSameRequestId) {
   EXPECT_EQ(server_.scenes.payload.size(), 48);
 }
 
+TEST_F(ClientTest, WaitsWhileTheServerIsAtAnEarlierAttempt) {
+  server_.scenes.answers = {{grpc::ABORTED, "request_id: under way"}};
+  EXPECT_TRUE(connect().create_scene().ok());
+  EXPECT_EQ(server_.scenes.created.size(), 2);
+}
+
 TEST_F(ClientTest, GivesEachCallItsOwnRequestId) {
   const Client client = connect();
   ASSERT_TRUE(client.create_scene().ok());

@@ -5,9 +5,19 @@
 #include "glm/geometric.hpp"
 #include "glm/mat3x3.hpp"
 #include "glm/matrix.hpp"
+#include "tbb/blocked_range.h"
+#include "tbb/parallel_for.h"
 
 namespace diaphane::geometry {
 namespace {
+
+/// Calls work(i) for i below `count`, spread over all cores.
+template <class Work>
+void for_each(size_t count, const Work& work) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 4096), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t i = range.begin(); i != range.end(); ++i) work(i);
+  });
+}
 
 /// Unit vector, or `fallback` where `v` has no usable length.
 glm::vec3 normalised_or(const glm::vec3& v, const glm::vec3& fallback) {
@@ -24,20 +34,19 @@ glm::mat3 cofactors(const glm::mat3& m) {
 
 std::vector<glm::vec3> compute_normals(const MeshTopology& topology, std::span<const glm::vec3> positions) {
   std::vector<glm::vec3> area_vectors(topology.triangles.size());
-  for (size_t t = 0; t < topology.triangles.size(); ++t) {
+  for_each(area_vectors.size(), [&](size_t t) {
     const glm::uvec3& i = topology.triangles[t];
     area_vectors[t] = glm::cross(positions[i.y] - positions[i.x], positions[i.z] - positions[i.x]);
-  }
-  std::vector<glm::vec3> weld_normals(topology.weld_count);
-  for (uint32_t w = 0; w < topology.weld_count; ++w) {
+  });
+  std::vector<glm::vec3> normals(topology.vertex_count);
+  for_each(normals.size(), [&](size_t v) {
+    const uint32_t w = topology.weld_of_vertex[v];
     glm::vec3 sum(0);
     for (uint32_t k = topology.first_triangle[w]; k < topology.first_triangle[w + 1]; ++k) {
       sum += area_vectors[topology.triangle_of_weld[k]];
     }
-    weld_normals[w] = normalised_or(sum, {0, 0, 1});
-  }
-  std::vector<glm::vec3> normals(topology.vertex_count);
-  for (uint32_t v = 0; v < topology.vertex_count; ++v) normals[v] = weld_normals[topology.weld_of_vertex[v]];
+    normals[v] = normalised_or(sum, {0, 0, 1});
+  });
   return normals;
 }
 
@@ -48,18 +57,18 @@ PlacedShape place(const MeshTopology& topology, const MeshShape& shape, const gl
   placed.flipped = glm::determinant(linear) < 0;
   const auto scale = static_cast<float>(millimetres_per_unit);
   placed.positions_mm.resize(shape.positions.size());
-  for (size_t v = 0; v < shape.positions.size(); ++v) {
+  for_each(shape.positions.size(), [&](size_t v) {
     placed.positions_mm[v] = glm::vec3(scene_from_mesh * glm::vec4(shape.positions[v], 1)) * scale;
-  }
+  });
   placed.normals = compute_normals(topology, placed.positions_mm);
   if (placed.flipped) {
     for (glm::vec3& n : placed.normals) n = -n;
   }
   if (!shape.normals.empty()) {
     const glm::mat3 normal_from_mesh = cofactors(linear) * (placed.flipped ? -1.0f : 1.0f);
-    for (size_t v = 0; v < shape.normals.size(); ++v) {
+    for_each(shape.normals.size(), [&](size_t v) {
       placed.normals[v] = normalised_or(normal_from_mesh * shape.normals[v], placed.normals[v]);
-    }
+    });
   }
   return placed;
 }

@@ -29,7 +29,7 @@ struct Bounds {
 };
 
 /// Applies `scene_from_mesh`, then `millimetres_per_unit`; computes normals where `shape` has none, replaces given ones of
-/// no length by computed ones.
+/// no length by computed ones. Spread over all cores, as is compute_normals; the same bytes on any number of them.
 PlacedShape place(const MeshTopology& topology, const MeshShape& shape, const glm::mat4& scene_from_mesh,
                   double millimetres_per_unit);
 

@@ -8,6 +8,7 @@
 #include "absl/container/flat_hash_map.h"
 #include "base/status.h"
 #include "fmt/format.h"
+#include "glm/geometric.hpp"
 
 namespace diaphane::geometry {
 namespace {
@@ -45,6 +46,54 @@ void list_triangles_of_welds(MeshTopology& mesh) {
   }
 }
 
+/// The corner of `t` after weld `w`, or w itself where `t` has no area by its indices or does not touch it.
+uint32_t weld_after(const MeshTopology& mesh, const glm::uvec3& t, uint32_t w) {
+  for (int k = 0; k < 3; ++k) {
+    if (mesh.weld_of_vertex[t[k]] == w) return mesh.weld_of_vertex[t[(k + 1) % 3]];
+  }
+  return w;
+}
+
+bool has_distinct_welds(const MeshTopology& mesh, const glm::uvec3& t) {
+  const uint32_t a = mesh.weld_of_vertex[t.x], b = mesh.weld_of_vertex[t.y], c = mesh.weld_of_vertex[t.z];
+  return a != b && b != c && c != a;
+}
+
+/// How many triangles run the edge from weld `a` to weld `b` in this direction.
+int count_directed(const MeshTopology& mesh, uint32_t a, uint32_t b) {
+  int count = 0;
+  for (uint32_t k = mesh.first_triangle[a]; k < mesh.first_triangle[a + 1]; ++k) {
+    const glm::uvec3& t = mesh.triangles[mesh.triangle_of_weld[k]];
+    count += has_distinct_welds(mesh, t) && weld_after(mesh, t, a) == b ? 1 : 0;
+  }
+  return count;
+}
+
+/// Six times the volume behind the triangles, about the first vertex.
+double volume6(const MeshTopology& mesh) {
+  const auto& p = mesh.uploaded_positions;
+  const glm::dvec3 origin = p.front();
+  double sum = 0;
+  for (const glm::uvec3& t : mesh.triangles) {
+    sum += glm::dot(glm::dvec3(p[t.x]) - origin, glm::cross(glm::dvec3(p[t.y]) - origin, glm::dvec3(p[t.z]) - origin));
+  }
+  return sum;
+}
+
+bool encloses_volume(const MeshTopology& mesh) {
+  // Fans of thousands of triangles around one vertex are not worth the time.
+  constexpr uint32_t kLargestFan = 256;
+  for (const glm::uvec3& t : mesh.triangles) {
+    if (!has_distinct_welds(mesh, t)) continue;
+    for (int k = 0; k < 3; ++k) {
+      const uint32_t a = mesh.weld_of_vertex[t[k]], b = mesh.weld_of_vertex[t[(k + 1) % 3]];
+      if (mesh.first_triangle[b + 1] - mesh.first_triangle[b] > kLargestFan) return false;
+      if (count_directed(mesh, b, a) != 1) return false;
+    }
+  }
+  return volume6(mesh) > 0;
+}
+
 }  // namespace
 
 absl::Status check_finite(std::span<const glm::vec3> values, std::string_view field) {
@@ -78,6 +127,7 @@ absl::StatusOr<std::shared_ptr<const MeshTopology>> build_topology(std::vector<g
   mesh->uploaded_positions = std::move(positions);
   weld(*mesh);
   list_triangles_of_welds(*mesh);
+  mesh->encloses_volume = encloses_volume(*mesh);
   return std::shared_ptr<const MeshTopology>(std::move(mesh));
 }
 

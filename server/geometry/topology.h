@@ -23,6 +23,9 @@ struct MeshTopology {
   std::vector<uint32_t> weld_of_vertex;      ///< [vertex_count] → 0..weld_count-1
   std::vector<uint32_t> first_triangle;      ///< [weld_count + 1] into triangle_of_weld
   std::vector<uint32_t> triangle_of_weld;    ///< triangles that touch each weld, ascending
+  /// Every edge has two triangles that run it in opposite directions, and the rest pose has its inside behind them:
+  /// from outside, triangles that face away are hidden.
+  bool encloses_volume = false;
 };
 
 /// Checks and indexes a mesh. Errors: INVALID_ARGUMENT when there is no triangle, an index is past the last vertex, or a

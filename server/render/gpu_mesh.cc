@@ -47,9 +47,12 @@ void GpuMesh::update_radiosity(std::span<const glm::vec3> radiosity, uint64_t ge
   });
 }
 
-void GpuMesh::draw() const {
+void GpuMesh::draw(bool facing_only) const {
+  if (facing_only) glEnable(GL_CULL_FACE);
+  glFrontFace(flipped_ ? GL_CW : GL_CCW);
   glBindVertexArray(vertex_array_.id());
   glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+  glDisable(GL_CULL_FACE);
 }
 
 }  // namespace diaphane::render

@@ -24,8 +24,8 @@ class GpuMesh {
   /// Radiosity at ATTRIBUTE_RADIOSITY, one value a vertex of the last update(). Stage: upload.
   void update_radiosity(std::span<const glm::vec3> radiosity, uint64_t generation, StageClock& clock);
 
-  /// Draws all triangles.
-  void draw() const;
+  /// Draws all triangles, or those alone that face the eye.
+  void draw(bool facing_only = false) const;
 
   bool flipped() const { return flipped_; }
 

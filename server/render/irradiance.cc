@@ -1,31 +1,61 @@
 #include "render/irradiance.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "glm/geometric.hpp"
-#include "render/lights.h"
+#include "render/entering_light.h"
+#include "tbb/blocked_range.h"
 #include "tbb/parallel_for.h"
 
 namespace diaphane::render {
 namespace {
 
+constexpr size_t kChunk = SurfacePoints::kCapacity;
+// What a vector may read behind the last value.
+constexpr size_t kPadding = 16;
+
+/// Calls work(i) for i below `count`, spread over all cores.
 template <typename Work>
-void for_each(size_t count, Work&& work) {
+void for_each(size_t count, const Work& work) {
   tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 1024), [&](const tbb::blocked_range<size_t>& range) {
     for (size_t i = range.begin(); i != range.end(); ++i) work(i);
+  });
+}
+
+/// E at `irradiance.size()` points, which `place(points, i, index)` puts into lane i. `seen`, where not null, has a row
+/// of that many values for each light.
+template <typename Place>
+void light_points(std::span<const LightStorage> lights, float refractive_index, const float* seen,
+                  std::span<glm::vec3> irradiance, const Place& place) {
+  const size_t count = irradiance.size();
+  tbb::parallel_for(size_t{0}, (count + kChunk - 1) / kChunk, [&](size_t chunk) {
+    const size_t first = chunk * kChunk, in_chunk = std::min(kChunk, count - first);
+    SurfacePoints points;
+    EnteringLight sum{};
+    for (size_t i = 0; i < in_chunk; ++i) place(points, i, first + i);
+    // Lanes behind the last repeat it.
+    for (size_t i = in_chunk; i % kPadding != 0; ++i) place(points, i, first + in_chunk - 1);
+    for (size_t light = 0; light < lights.size(); ++light) {
+      add_entering_light(lights[light], refractive_index, points, in_chunk,
+                         seen == nullptr ? nullptr : seen + light * count + first, sum);
+    }
+    for (size_t i = 0; i < in_chunk; ++i) {
+      irradiance[first + i] = {sum.channel[0][i], sum.channel[1][i], sum.channel[2][i]};
+    }
   });
 }
 
 }  // namespace
 
 void IrradianceStage::cast_shadows(const diffusion::SurfaceTopology& topology, const geometry::PlacedShape& shape,
-                                   std::span<const LightStorage> lights, const ShadowScene& shadows) {
-  const size_t triangles = topology.triangles.size();
+                                   std::span<const LightStorage> lights, ShadowScene& shadows) {
+  const size_t triangles = topology.triangles.size(), vertices = shape.positions_mm.size();
   centroids_mm_.resize(triangles);
   facet_normals_.resize(triangles);
   areas_.resize(triangles);
-  of_triangle_.resize(lights.size() * triangles);
-  of_slot_.resize(lights.size() * topology.slot_count);
+  of_triangle_.resize(lights.size() * triangles + kPadding);
+  of_vertex_.resize(lights.size() * vertices + kPadding);
   for_each(triangles, [&](size_t t) {
     const glm::uvec3& i = topology.triangles[t];
     const glm::vec3& a = shape.positions_mm[i.x];
@@ -39,49 +69,38 @@ void IrradianceStage::cast_shadows(const diffusion::SurfaceTopology& topology, c
   for (size_t light = 0; light < lights.size(); ++light) {
     const std::span<float> seen(of_triangle_.data() + light * triangles, triangles);
     shadows.visibility(lights[light], centroids_mm_, facet_normals_, seen);
-    float* of_slot = of_slot_.data() + light * topology.slot_count;
-    for_each(topology.slot_count, [&](size_t w) {
+    float* of_vertex = of_vertex_.data() + light * vertices;
+    for_each(vertices, [&](size_t v) {
+      const uint32_t slot = topology.slot_of_vertex[v];
       float sum = 0;
       float area = 0;
-      for (uint32_t k = topology.first_corner[w]; k < topology.first_corner[w + 1]; ++k) {
+      for (uint32_t k = topology.first_corner[slot]; k < topology.first_corner[slot + 1]; ++k) {
         const uint32_t t = topology.triangle_of_corner[k];
         sum += areas_[t] * seen[t];
         area += areas_[t];
       }
-      of_slot[w] = area > 0 ? sum / area : 1.0f;
+      of_vertex[v] = area > 0 ? sum / area : 1.0f;
     });
   }
 }
 
 void IrradianceStage::run(const diffusion::SurfaceTopology& topology, const geometry::PlacedShape& shape,
-                          std::span<const LightStorage> lights, float refractive_index, const ShadowScene* shadows) {
-  const size_t triangles = topology.triangles.size();
-  irradiance_.of_triangle.resize(triangles);
+                          std::span<const LightStorage> lights, float refractive_index, ShadowScene* shadows) {
+  irradiance_.of_triangle.resize(topology.triangles.size());
   irradiance_.of_vertex.resize(shape.positions_mm.size());
   if (shadows != nullptr) cast_shadows(topology, shape, lights, *shadows);
-  for_each(triangles, [&](size_t t) {
-    const glm::uvec3& i = topology.triangles[t];
-    const glm::vec3 centroid = (shape.positions_mm[i.x] + shape.positions_mm[i.y] + shape.positions_mm[i.z]) / 3.0f;
-    const glm::vec3 sum = shape.normals[i.x] + shape.normals[i.y] + shape.normals[i.z];
-    const float length = glm::length(sum);
-    const glm::vec3 normal = length > 0 ? sum / length : shape.normals[i.x];
-    glm::vec3 e(0);
-    for (size_t light = 0; light < lights.size(); ++light) {
-      const float seen = shadows == nullptr ? 1.0f : of_triangle_[light * triangles + t];
-      if (seen > 0) e += seen * entering_irradiance(lights[light], centroid, normal, refractive_index);
-    }
-    irradiance_.of_triangle[t] = e;
-  });
-  for_each(shape.positions_mm.size(), [&](size_t v) {
-    glm::vec3 e(0);
-    for (size_t light = 0; light < lights.size(); ++light) {
-      const float seen = shadows == nullptr ? 1.0f : of_slot_[light * topology.slot_count + topology.slot_of_vertex[v]];
-      if (seen > 0) {
-        e += seen * entering_irradiance(lights[light], shape.positions_mm[v], shape.normals[v], refractive_index);
-      }
-    }
-    irradiance_.of_vertex[v] = e;
-  });
+  light_points(lights, refractive_index, shadows == nullptr ? nullptr : of_triangle_.data(), irradiance_.of_triangle,
+               [&](SurfacePoints& points, size_t lane, size_t t) {
+                 const glm::uvec3& i = topology.triangles[t];
+                 const glm::vec3 sum = shape.normals[i.x] + shape.normals[i.y] + shape.normals[i.z];
+                 const float length2 = glm::dot(sum, sum);
+                 points.set(lane, (shape.positions_mm[i.x] + shape.positions_mm[i.y] + shape.positions_mm[i.z]) / 3.0f,
+                            length2 > 0 ? sum / std::sqrt(length2) : shape.normals[i.x]);
+               });
+  light_points(lights, refractive_index, shadows == nullptr ? nullptr : of_vertex_.data(), irradiance_.of_vertex,
+               [&](SurfacePoints& points, size_t lane, size_t v) {
+                 points.set(lane, shape.positions_mm[v], shape.normals[v]);
+               });
 }
 
 }  // namespace diaphane::render

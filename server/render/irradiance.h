@@ -23,20 +23,21 @@ class IrradianceStage {
  public:
   /// `shadows` null: every light is seen everywhere. A vertex sees of a light what its triangles see, by area.
   void run(const diffusion::SurfaceTopology& topology, const geometry::PlacedShape& shape,
-           std::span<const LightStorage> lights, float refractive_index, const ShadowScene* shadows);
+           std::span<const LightStorage> lights, float refractive_index, ShadowScene* shadows);
 
   const SurfaceIrradiance& result() const { return irradiance_; }
 
  private:
   void cast_shadows(const diffusion::SurfaceTopology& topology, const geometry::PlacedShape& shape,
-                    std::span<const LightStorage> lights, const ShadowScene& shadows);
+                    std::span<const LightStorage> lights, ShadowScene& shadows);
 
   SurfaceIrradiance irradiance_;
   std::vector<glm::vec3> centroids_mm_;
   std::vector<glm::vec3> facet_normals_;
   std::vector<float> areas_;
-  std::vector<float> of_triangle_;  ///< visibility, [light][triangle]
-  std::vector<float> of_slot_;      ///< visibility, [light][slot]
+  // Visibility, a row a light, with room for whole vectors behind the last.
+  std::vector<float> of_triangle_;
+  std::vector<float> of_vertex_;
 };
 
 }  // namespace diaphane::render

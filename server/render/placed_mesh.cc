@@ -1,10 +1,19 @@
 #include "render/placed_mesh.h"
 
+#include <atomic>
 #include <cmath>
 
 #include "glm/matrix.hpp"
 
 namespace diaphane::render {
+namespace {
+
+uint64_t next_generation() {
+  static std::atomic<uint64_t> last = 0;
+  return ++last;
+}
+
+}  // namespace
 
 float PlacedMesh::unit_mm() const {
   return static_cast<float>(millimetres_per_unit_ * std::cbrt(std::abs(glm::determinant(glm::mat3(scene_from_mesh_)))));
@@ -25,7 +34,7 @@ void PlacedMesh::update(const scene::Mesh& mesh, double millimetres_per_unit, St
   shape_ = mesh.shape;
   scene_from_mesh_ = mesh.scene_from_mesh;
   millimetres_per_unit_ = millimetres_per_unit;
-  ++generation_;
+  generation_ = next_generation();
 }
 
 }  // namespace diaphane::render

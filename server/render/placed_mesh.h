@@ -20,7 +20,7 @@ class PlacedMesh {
   const geometry::Bounds& bounds_mm() const { return bounds_mm_; }
   /// Millimetres that a mesh unit is long, on average over directions.
   float unit_mm() const;
-  /// Grows whenever positions or normals in millimetres change.
+  /// Another number whenever positions or normals in millimetres change; no two meshes ever share one.
   uint64_t generation() const { return generation_; }
   /// The scene let go of the mesh that this one follows.
   bool orphaned() const { return topology_.expired(); }

@@ -30,6 +30,10 @@ bool beyond(const geometry::Bounds& bounds_mm, float limit_mm) {
   return !(std::max({farthest.x, farthest.y, farthest.z}) <= limit_mm);
 }
 
+bool contains(const geometry::Bounds& bounds, const glm::vec3& point) {
+  return glm::clamp(point, bounds.lowest, bounds.highest) == point;
+}
+
 absl::Status check(const std::atomic<bool>& cancelled) {
   return cancelled.load() ? absl::CancelledError("the frame was cancelled while it was drawn") : absl::OkStatus();
 }
@@ -54,20 +58,17 @@ void ScenePainter::gather_meshes(Job& job) {
 }
 
 void ScenePainter::update_shadows(Job& job) {
-  std::vector<std::pair<std::string, uint64_t>> reads;
-  for (const DrawnMesh& drawn : job.meshes) reads.emplace_back(drawn.mesh->name, drawn.state->placed.generation());
-  if (!shadow_reads_.renew(std::move(reads))) {
-    job.clock.sleep("shadow");
-    return;
+  std::vector<uint64_t> reads;
+  for (const DrawnMesh& drawn : job.meshes) reads.push_back(drawn.state->placed.generation());
+  if (!shadow_reads_.renew(std::move(reads))) return;
+  std::vector<ShadowCaster> casters;
+  for (const DrawnMesh& drawn : job.meshes) {
+    const geometry::MeshTopology& topology = *drawn.mesh->topology;
+    const geometry::PlacedShape& shape = drawn.state->placed.shape();
+    casters.push_back({topology.triangles, shape.positions_mm, topology.encloses_volume, shape.flipped});
   }
-  job.clock.run("shadow", [&] {
-    shadows_.resize(job.meshes.size());
-    for (size_t i = 0; i < job.meshes.size(); ++i) {
-      shadows_.set_mesh(i, job.meshes[i].mesh->topology->triangles, job.meshes[i].state->placed.shape().positions_mm);
-    }
-    shadows_.commit();
-    ++shadows_generation_;
-  });
+  shadows_.set_casters(std::move(casters), job.bounds_mm);
+  ++shadows_generation_;
 }
 
 void ScenePainter::bound_memory(const Job& job) {
@@ -143,6 +144,15 @@ void ScenePainter::bind_view(const Job& job, size_t mesh_index) const {
   shading_.bind(material_uniforms(job.meshes[mesh_index].material));
 }
 
+void ScenePainter::draw_meshes(const Job& job) const {
+  for (size_t i = 0; i < job.meshes.size(); ++i) {
+    bind_view(job, i);
+    const MeshState& state = *job.meshes[i].state;
+    const bool from_outside = !contains(state.placed.bounds_mm(), glm::vec3(job.view.eye_mm));
+    state.gpu.draw(from_outside && job.meshes[i].mesh->topology->encloses_volume);
+  }
+}
+
 void ScenePainter::set_viewport(const Job& job, const Tile& tile) const {
   glViewport(-static_cast<GLint>(tile.x_px), -static_cast<GLint>(tile.y_px), static_cast<GLsizei>(job.request.width_px),
              static_cast<GLsizei>(job.request.height_px));
@@ -153,10 +163,7 @@ void ScenePainter::draw_gbuffer(Job& job, const Tile& tile) {
     targets_->begin_gbuffer();
     set_viewport(job, tile);
     glUseProgram(shading_.gbuffer().id());
-    for (size_t i = 0; i < job.meshes.size(); ++i) {
-      bind_view(job, i);
-      job.meshes[i].state->gpu.draw();
-    }
+    draw_meshes(job);
     glFinish();
   });
 }
@@ -170,10 +177,7 @@ absl::Status ScenePainter::draw_tile(Job& job, const Tile& tile, uint8_t* pixels
       targets_->begin_forward();
       set_viewport(job, tile);
       glUseProgram(shading_.integral().id());
-      for (size_t i = 0; i < job.meshes.size(); ++i) {
-        bind_view(job, i);
-        job.meshes[i].state->gpu.draw();
-      }
+      draw_meshes(job);
       glFinish();
     });
   } else {
@@ -215,6 +219,7 @@ absl::Status ScenePainter::draw_reference_tile(Job& job, const Tile& tile, uint8
       points_mm.emplace_back(positions[p]);
       points_normals.emplace_back(normals[p]);
     }
+    if (job.request.settings.shadows) shadows_.prepare_rays();
     const BruteForceBody body{*drawn.mesh->topology, drawn.state->placed.shape(), drawn.material, job.lights,
                               job.request.settings.shadows ? &shadows_ : nullptr};
     const auto leaving = job.clock.run("brute_force", [&] {

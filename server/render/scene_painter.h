@@ -43,6 +43,7 @@ class ScenePainter {
   absl::Status update(Job& job);
   void update_atlas(const DrawnMesh& drawn, Job& job);
   void bind_view(const Job& job, size_t mesh_index) const;
+  void draw_meshes(const Job& job) const;
   void set_viewport(const Job& job, const Tile& tile) const;
   void draw_gbuffer(Job& job, const Tile& tile);
   absl::Status draw_tile(Job& job, const Tile& tile, uint8_t* pixels);
@@ -52,7 +53,7 @@ class ScenePainter {
   std::map<std::string, MeshState> meshes_;
   std::optional<ViewTargets> targets_;
   ShadowScene shadows_;
-  Memo<std::vector<std::pair<std::string, uint64_t>>> shadow_reads_;  // every mesh's name and place
+  Memo<std::vector<uint64_t>> shadow_reads_;  // every mesh's place
   uint64_t shadows_generation_ = 0;
 };
 

@@ -76,47 +76,53 @@ struct ShadowScene::Embree {
     }
     slot = {};
   }
+
+  void resize(size_t count) {
+    for (size_t i = count; i < slots.size(); ++i) drop(slots[i]);
+    slots.resize(count);
+  }
+
+  /// A slot that had as many triangles and vertices is refitted.
+  void set_mesh(size_t index, const ShadowCaster& caster) {
+    Slot& slot = slots[index];
+    const bool refit = slot.geometry != nullptr && slot.triangles == caster.triangles.size() &&
+                       slot.vertices == caster.positions_mm.size();
+    if (!refit) {
+      drop(slot);
+      slot = {rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE), caster.triangles.size(), caster.positions_mm.size()};
+      rtcSetNewGeometryBuffer(slot.geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
+                              slot.triangles);
+      rtcSetNewGeometryBuffer(slot.geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
+                              slot.vertices);
+      rtcAttachGeometryByID(scene, slot.geometry, static_cast<unsigned>(index));
+    }
+    std::memcpy(rtcGetGeometryBufferData(slot.geometry, RTC_BUFFER_TYPE_INDEX, 0), caster.triangles.data(),
+                caster.triangles.size_bytes());
+    std::memcpy(rtcGetGeometryBufferData(slot.geometry, RTC_BUFFER_TYPE_VERTEX, 0), caster.positions_mm.data(),
+                caster.positions_mm.size_bytes());
+    rtcSetGeometryBuildQuality(slot.geometry, refit ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
+    rtcUpdateGeometryBuffer(slot.geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+    rtcCommitGeometry(slot.geometry);
+  }
 };
 
 ShadowScene::ShadowScene() : embree_(std::make_unique<Embree>()) {}
 ShadowScene::~ShadowScene() = default;
 
-void ShadowScene::resize(size_t count) {
-  for (size_t i = count; i < embree_->slots.size(); ++i) embree_->drop(embree_->slots[i]);
-  embree_->slots.resize(count);
+void ShadowScene::set_casters(std::vector<ShadowCaster> casters, const geometry::Bounds& bounds_mm) {
+  casters_ = std::move(casters);
+  bounds_mm_ = bounds_mm;
+  rays_ready_ = false;
 }
 
-void ShadowScene::set_mesh(size_t slot_index, std::span<const glm::uvec3> triangles,
-                           std::span<const glm::vec3> positions_mm) {
-  if (slot_index >= embree_->slots.size()) embree_->slots.resize(slot_index + 1);
-  Embree::Slot& slot = embree_->slots[slot_index];
-  const bool refit =
-      slot.geometry != nullptr && slot.triangles == triangles.size() && slot.vertices == positions_mm.size();
-  if (!refit) {
-    embree_->drop(slot);
-    slot = {rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE), triangles.size(), positions_mm.size()};
-    rtcSetNewGeometryBuffer(slot.geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
-                            triangles.size());
-    rtcSetNewGeometryBuffer(slot.geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
-                            positions_mm.size());
-    rtcAttachGeometryByID(embree_->scene, slot.geometry, static_cast<unsigned>(slot_index));
-  }
-  std::memcpy(rtcGetGeometryBufferData(slot.geometry, RTC_BUFFER_TYPE_INDEX, 0), triangles.data(),
-              triangles.size_bytes());
-  std::memcpy(rtcGetGeometryBufferData(slot.geometry, RTC_BUFFER_TYPE_VERTEX, 0), positions_mm.data(),
-              positions_mm.size_bytes());
-  rtcSetGeometryBuildQuality(slot.geometry, refit ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
-  rtcUpdateGeometryBuffer(slot.geometry, RTC_BUFFER_TYPE_VERTEX, 0);
-  rtcCommitGeometry(slot.geometry);
-}
-
-void ShadowScene::commit() {
+void ShadowScene::prepare_rays() {
+  if (rays_ready_) return;
+  rays_ready_ = true;
+  embree_->resize(casters_.size());
+  for (size_t i = 0; i < casters_.size(); ++i) embree_->set_mesh(i, casters_[i]);
   rtcCommitScene(embree_->scene);
-  RTCBounds bounds;
-  rtcGetSceneBounds(embree_->scene, &bounds);
-  const float size =
-      std::max({bounds.upper_x - bounds.lower_x, bounds.upper_y - bounds.lower_y, bounds.upper_z - bounds.lower_z});
-  embree_->offset_mm = kOffset * size;
+  const glm::vec3 extent = bounds_mm_.highest - bounds_mm_.lowest;
+  embree_->offset_mm = kOffset * std::max({extent.x, extent.y, extent.z});
 }
 
 float ShadowScene::visibility_at(const LightStorage& light, const glm::vec3& point_mm, const glm::vec3& normal) const {
@@ -139,7 +145,23 @@ float ShadowScene::visibility_at(const LightStorage& light, const glm::vec3& poi
 }
 
 void ShadowScene::visibility(const LightStorage& light, std::span<const glm::vec3> points_mm,
-                             std::span<const glm::vec3> facet_normals, std::span<float> share) const {
+                             std::span<const glm::vec3> facet_normals, std::span<float> share) {
+  if (!ShadowMap::serves(light, bounds_mm_)) {
+    prepare_rays();
+    trace(light, points_mm, facet_normals, share);
+    return;
+  }
+  map_.draw(light, bounds_mm_, casters_);
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, points_mm.size(), 1024),
+                    [&](const tbb::blocked_range<size_t>& range) {
+                      for (size_t i = range.begin(); i != range.end(); ++i) {
+                        share[i] = map_.visibility_at(points_mm[i], facet_normals[i]);
+                      }
+                    });
+}
+
+void ShadowScene::trace(const LightStorage& light, std::span<const glm::vec3> points_mm,
+                        std::span<const glm::vec3> facet_normals, std::span<float> share) const {
   const int samples = samples_of(light);
   const size_t packets = (points_mm.size() + kPacket - 1) / kPacket;
   tbb::parallel_for(tbb::blocked_range<size_t>(0, packets, 64), [&](const tbb::blocked_range<size_t>& range) {

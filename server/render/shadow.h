@@ -1,4 +1,4 @@
-// Whether a light is seen from a surface, by rays.
+// Whether a light is seen from a surface.
 #pragma once
 
 #include <memory>
@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "geometry/shape.h"
-#include "geometry/topology.h"
+#include "render/shadow_map.h"
 #include "render/uniforms.h"
 
 namespace diaphane::render {
 
-/// All meshes of a scene as one ray-tracing scene that is refitted as they move (Embree). One thread calls; work inside
-/// is spread over all cores. The same bytes on any number of threads.
+/// All meshes of a scene as casters of shadows. Hard lights outside the scene are answered by depth maps, others by rays
+/// (Embree), whose structure is built when first needed and refitted as meshes move. One thread calls; work inside is
+/// spread over all cores. The same bytes on any number of threads.
 class ShadowScene {
  public:
   ShadowScene();
@@ -20,22 +21,28 @@ class ShadowScene {
   ShadowScene(const ShadowScene&) = delete;
   ShadowScene& operator=(const ShadowScene&) = delete;
 
-  /// Gives slot `slot` (0, 1, …) its triangles and where they are; a slot that had as many of both is refitted.
-  void set_mesh(size_t slot, std::span<const glm::uvec3> triangles, std::span<const glm::vec3> positions_mm);
-  /// Drops slots from `count` on.
-  void resize(size_t count);
-  /// Makes what was set visible to rays.
-  void commit();
+  /// Takes the casters as they are now, by reference: they must stay until the next call.
+  void set_casters(std::vector<ShadowCaster> casters, const geometry::Bounds& bounds_mm);
 
   /// The visible share of `light`, 0..1, at each of `points_mm`, which lie on facets with unit normals `facet_normals`.
   /// Hard for a light without a radius; else the share of 16 points of its disc.
   void visibility(const LightStorage& light, std::span<const glm::vec3> points_mm,
-                  std::span<const glm::vec3> facet_normals, std::span<float> share) const;
-  /// The same at one point, from any thread.
+                  std::span<const glm::vec3> facet_normals, std::span<float> share);
+
+  /// Makes visibility_at() answer for the casters of now.
+  void prepare_rays();
+  /// The same at one point, by rays, from any thread.
   float visibility_at(const LightStorage& light, const glm::vec3& point_mm, const glm::vec3& normal) const;
 
  private:
   struct Embree;
+  void trace(const LightStorage& light, std::span<const glm::vec3> points_mm, std::span<const glm::vec3> facet_normals,
+             std::span<float> share) const;
+
+  std::vector<ShadowCaster> casters_;
+  geometry::Bounds bounds_mm_;
+  bool rays_ready_ = false;
+  ShadowMap map_;
   std::unique_ptr<Embree> embree_;
 };
 

@@ -23,7 +23,7 @@ class SurfaceLight {
     std::span<const LightStorage> lights;
     const optics::Coefficients& material;
     diffusion::Quality quality;
-    const ShadowScene* shadows;   ///< null: unshadowed
+    ShadowScene* shadows;         ///< null: unshadowed
     uint64_t shadows_generation;  ///< of what casts them; 0 without
   };
 

@@ -23,15 +23,15 @@ constexpr uint32_t kChunk = NodeTree::kChunkSlots;
 struct Face {
   glm::vec3 area_vector_mm2{0};
   float area_mm2 = 0;
-  glm::vec3 centroid_times_area{0};
+  glm::vec3 weighted{0};  ///< centroid times area; once the light is known, flux to each corner
   float unused = 0;
 };
 
 Face make_face(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   Face face;
   face.area_vector_mm2 = 0.5f * glm::cross(b - a, c - a);
-  face.area_mm2 = glm::length(face.area_vector_mm2);
-  face.centroid_times_area = face.area_mm2 / 3 * (a + b + c);
+  face.area_mm2 = std::sqrt(glm::dot(face.area_vector_mm2, face.area_vector_mm2));
+  face.weighted = face.area_mm2 * (1.0f / 3) * (a + b + c);
   return face;
 }
 
@@ -75,7 +75,6 @@ struct DipoleIntegral::State {
     arena.execute([&] { tbb::parallel_for(uint32_t{0}, count, work); });
   }
 
-  glm::vec3 face_irradiance_sum(uint32_t slot, std::span<const glm::vec3> at_triangles) const;
   glm::vec3 weld_irradiance(uint32_t slot, std::span<const glm::vec3> at_vertices) const;
 
   std::shared_ptr<const SurfaceTopology> topology;
@@ -125,7 +124,7 @@ void DipoleIntegral::update_positions(std::span<const glm::vec3> positions_mm, s
       const glm::vec3& position = positions_mm[vertex];
       s.tree.places[slot] = {position, sum.area_mm2 / 3, sum.area_vector_mm2 / 3.0f};
       s.tree.sources[slot].position_mm =
-          sum.area_mm2 > 0 ? 0.5f * (position + sum.centroid_times_area / sum.area_mm2) : position;
+          sum.area_mm2 > 0 ? 0.5f * (position + sum.weighted / sum.area_mm2) : position;
       if (normals.empty()) continue;
       const float length = glm::length(sum.area_vector_mm2);
       normals[vertex] = length > 0 ? sum.area_vector_mm2 / length : glm::vec3(0, 0, 1);
@@ -145,16 +144,6 @@ void DipoleIntegral::refit_geometry() {
   State& s = *state_;
   s.for_each(s.tree.chunk_count(), [&](uint32_t chunk) { s.tree.refit_geometry_chunk(chunk); });
   s.tree.refit_geometry_top();
-}
-
-/// Σ E·A/3 over the triangles of a slot: its flux.
-glm::vec3 DipoleIntegral::State::face_irradiance_sum(uint32_t slot, std::span<const glm::vec3> at_triangles) const {
-  glm::vec3 sum(0);
-  for (uint32_t k = topology->first_corner[slot]; k < topology->first_corner[slot + 1]; ++k) {
-    const uint32_t t = topology->triangle_of_corner[k];
-    sum += faces[t].area_mm2 * at_triangles[t];
-  }
-  return sum / 3.0f;
 }
 
 /// The mean over the triangles at a place where several vertices meet, each with its own normal, weighted by area.
@@ -177,11 +166,20 @@ glm::vec3 DipoleIntegral::State::weld_irradiance(uint32_t slot, std::span<const 
 
 void DipoleIntegral::set_irradiance(std::span<const glm::vec3> at_triangles, std::span<const glm::vec3> at_vertices) {
   State& s = *state_;
-  const auto slots = s.topology->slot_count;
+  const SurfaceTopology& surface = *s.topology;
+  const auto slots = surface.slot_count, triangles = static_cast<uint32_t>(surface.triangles.size());
+  s.for_each((triangles + kChunk - 1) / kChunk, [&](uint32_t chunk) {
+    const uint32_t end = std::min((chunk + 1) * kChunk, triangles);
+    for (uint32_t t = chunk * kChunk; t < end; ++t) s.faces[t].weighted = s.faces[t].area_mm2 / 3 * at_triangles[t];
+  });
   s.for_each(s.tree.chunk_count(), [&](uint32_t chunk) {
     const uint32_t end = std::min((chunk + 1) * kChunk, slots);
     for (uint32_t slot = chunk * kChunk; slot < end; ++slot) {
-      s.tree.sources[slot].flux_w = s.face_irradiance_sum(slot, at_triangles);
+      Four flux{};
+      for (uint32_t k = surface.first_corner[slot]; k < surface.first_corner[slot + 1]; ++k) {
+        flux += load4(reinterpret_cast<const float*>(&s.faces[surface.triangle_of_corner[k]]) + 4);
+      }
+      s.tree.sources[slot].flux_w = {flux[0], flux[1], flux[2]};
       s.irradiance[slot] = s.weld_irradiance(slot, at_vertices);
     }
   });

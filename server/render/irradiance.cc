@@ -51,35 +51,18 @@ void light_points(std::span<const LightStorage> lights, float refractive_index, 
 void IrradianceStage::cast_shadows(const diffusion::SurfaceTopology& topology, const geometry::PlacedShape& shape,
                                    std::span<const LightStorage> lights, ShadowScene& shadows) {
   const size_t triangles = topology.triangles.size(), vertices = shape.positions_mm.size();
-  centroids_mm_.resize(triangles);
-  facet_normals_.resize(triangles);
-  areas_.resize(triangles);
   of_triangle_.resize(lights.size() * triangles + kPadding);
   of_vertex_.resize(lights.size() * vertices + kPadding);
-  for_each(triangles, [&](size_t t) {
-    const glm::uvec3& i = topology.triangles[t];
-    const glm::vec3& a = shape.positions_mm[i.x];
-    const glm::vec3& b = shape.positions_mm[i.y];
-    const glm::vec3& c = shape.positions_mm[i.z];
-    centroids_mm_[t] = (a + b + c) / 3.0f;
-    const glm::vec3 doubled_area = glm::cross(b - a, c - a) * (shape.flipped ? -1.0f : 1.0f);
-    areas_[t] = glm::length(doubled_area);
-    facet_normals_[t] = areas_[t] > 0 ? doubled_area / areas_[t] : glm::vec3(0);
-  });
   for (size_t light = 0; light < lights.size(); ++light) {
     const std::span<float> seen(of_triangle_.data() + light * triangles, triangles);
-    shadows.visibility(lights[light], centroids_mm_, facet_normals_, seen);
+    shadows.visibility(lights[light], topology.triangles, shape, seen);
     float* of_vertex = of_vertex_.data() + light * vertices;
     for_each(vertices, [&](size_t v) {
       const uint32_t slot = topology.slot_of_vertex[v];
+      const uint32_t begin = topology.first_corner[slot], end = topology.first_corner[slot + 1];
       float sum = 0;
-      float area = 0;
-      for (uint32_t k = topology.first_corner[slot]; k < topology.first_corner[slot + 1]; ++k) {
-        const uint32_t t = topology.triangle_of_corner[k];
-        sum += areas_[t] * seen[t];
-        area += areas_[t];
-      }
-      of_vertex[v] = area > 0 ? sum / area : 1.0f;
+      for (uint32_t k = begin; k < end; ++k) sum += seen[topology.triangle_of_corner[k]];
+      of_vertex[v] = begin < end ? sum / static_cast<float>(end - begin) : 1.0f;
     });
   }
 }

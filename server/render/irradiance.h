@@ -21,7 +21,7 @@ struct SurfaceIrradiance {
 /// Computes E natively, spread over all cores; keeps its memory from call to call. One thread calls.
 class IrradianceStage {
  public:
-  /// `shadows` null: every light is seen everywhere. A vertex sees of a light what its triangles see, by area.
+  /// `shadows` null: every light is seen everywhere. A vertex sees of a light what its triangles see, on average.
   void run(const diffusion::SurfaceTopology& topology, const geometry::PlacedShape& shape,
            std::span<const LightStorage> lights, float refractive_index, ShadowScene* shadows);
 
@@ -32,9 +32,6 @@ class IrradianceStage {
                     std::span<const LightStorage> lights, ShadowScene& shadows);
 
   SurfaceIrradiance irradiance_;
-  std::vector<glm::vec3> centroids_mm_;
-  std::vector<glm::vec3> facet_normals_;
-  std::vector<float> areas_;
   // Visibility, a row a light, with room for whole vectors behind the last.
   std::vector<float> of_triangle_;
   std::vector<float> of_vertex_;

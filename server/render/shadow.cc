@@ -46,6 +46,20 @@ glm::vec3 towards_sample(const LightStorage& light, const glm::vec3& point_mm, i
   return to_centre + r * (std::cos(angle) * u + std::sin(angle) * v);
 }
 
+struct Facet {
+  glm::vec3 centroid_mm;
+  glm::vec3 normal;  ///< unit, outward; none without an area
+};
+
+Facet facet_of(const geometry::PlacedShape& shape, const glm::uvec3& i) {
+  const glm::vec3& a = shape.positions_mm[i.x];
+  const glm::vec3& b = shape.positions_mm[i.y];
+  const glm::vec3& c = shape.positions_mm[i.z];
+  const glm::vec3 across = glm::cross(b - a, c - a) * (shape.flipped ? -1.0f : 1.0f);
+  const float length2 = glm::dot(across, across);
+  return {(a + b + c) / 3.0f, length2 > 0 ? across / std::sqrt(length2) : glm::vec3(0)};
+}
+
 }  // namespace
 
 struct ShadowScene::Embree {
@@ -144,41 +158,45 @@ float ShadowScene::visibility_at(const LightStorage& light, const glm::vec3& poi
   return seen / static_cast<float>(samples);
 }
 
-void ShadowScene::visibility(const LightStorage& light, std::span<const glm::vec3> points_mm,
-                             std::span<const glm::vec3> facet_normals, std::span<float> share) {
+void ShadowScene::visibility(const LightStorage& light, std::span<const glm::uvec3> triangles,
+                             const geometry::PlacedShape& shape, std::span<float> share) {
   if (!ShadowMap::serves(light, bounds_mm_)) {
     prepare_rays();
-    trace(light, points_mm, facet_normals, share);
+    trace(light, triangles, shape, share);
     return;
   }
   map_.draw(light, bounds_mm_, casters_);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, points_mm.size(), 1024),
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, triangles.size(), 1024),
                     [&](const tbb::blocked_range<size_t>& range) {
-                      for (size_t i = range.begin(); i != range.end(); ++i) {
-                        share[i] = map_.visibility_at(points_mm[i], facet_normals[i]);
+                      for (size_t t = range.begin(); t != range.end(); ++t) {
+                        const Facet facet = facet_of(shape, triangles[t]);
+                        share[t] = map_.visibility_at(facet.centroid_mm, facet.normal);
                       }
                     });
 }
 
-void ShadowScene::trace(const LightStorage& light, std::span<const glm::vec3> points_mm,
-                        std::span<const glm::vec3> facet_normals, std::span<float> share) const {
+void ShadowScene::trace(const LightStorage& light, std::span<const glm::uvec3> triangles,
+                        const geometry::PlacedShape& shape, std::span<float> share) const {
   const int samples = samples_of(light);
-  const size_t packets = (points_mm.size() + kPacket - 1) / kPacket;
+  const size_t packets = (triangles.size() + kPacket - 1) / kPacket;
   tbb::parallel_for(tbb::blocked_range<size_t>(0, packets, 64), [&](const tbb::blocked_range<size_t>& range) {
     for (size_t packet = range.begin(); packet != range.end(); ++packet) {
       const size_t first = packet * kPacket;
-      const size_t count = std::min(kPacket, points_mm.size() - first);
+      const size_t count = std::min(kPacket, triangles.size() - first);
+      glm::vec3 starts[kPacket];
+      for (size_t i = 0; i < kPacket; ++i) {
+        // Lanes without a triangle repeat the first one: Embree checks them all.
+        const Facet facet = facet_of(shape, triangles[first + (i < count ? i : 0)]);
+        starts[i] = facet.centroid_mm + embree_->offset_mm * facet.normal;
+      }
       float seen[kPacket] = {};
       for (int sample = 0; sample < samples; ++sample) {
         alignas(64) RTCRay16 rays{};
         alignas(64) int valid[kPacket] = {};
         for (size_t i = 0; i < kPacket; ++i) {
-          // Lanes without a point repeat the first one: Embree checks them all.
-          const size_t point = first + (i < count ? i : 0);
-          const glm::vec3 start = points_mm[point] + embree_->offset_mm * facet_normals[point];
-          const glm::vec3 direction = towards_sample(light, start, sample);
+          const glm::vec3 direction = towards_sample(light, starts[i], sample);
           valid[i] = i < count ? -1 : 0;
-          rays.org_x[i] = start.x, rays.org_y[i] = start.y, rays.org_z[i] = start.z;
+          rays.org_x[i] = starts[i].x, rays.org_y[i] = starts[i].y, rays.org_z[i] = starts[i].z;
           rays.dir_x[i] = direction.x, rays.dir_y[i] = direction.y, rays.dir_z[i] = direction.z;
           rays.tfar[i] = farthest(light);
           rays.mask[i] = ~0u;

@@ -24,10 +24,10 @@ class ShadowScene {
   /// Takes the casters as they are now, by reference: they must stay until the next call.
   void set_casters(std::vector<ShadowCaster> casters, const geometry::Bounds& bounds_mm);
 
-  /// The visible share of `light`, 0..1, at each of `points_mm`, which lie on facets with unit normals `facet_normals`.
-  /// Hard for a light without a radius; else the share of 16 points of its disc.
-  void visibility(const LightStorage& light, std::span<const glm::vec3> points_mm,
-                  std::span<const glm::vec3> facet_normals, std::span<float> share);
+  /// The visible share of `light`, 0..1, at the centroid of each of `triangles`, seen from in front. Hard for a light
+  /// without a radius; else the share of 16 points of its disc.
+  void visibility(const LightStorage& light, std::span<const glm::uvec3> triangles, const geometry::PlacedShape& shape,
+                  std::span<float> share);
 
   /// Makes visibility_at() answer for the casters of now.
   void prepare_rays();
@@ -36,7 +36,7 @@ class ShadowScene {
 
  private:
   struct Embree;
-  void trace(const LightStorage& light, std::span<const glm::vec3> points_mm, std::span<const glm::vec3> facet_normals,
+  void trace(const LightStorage& light, std::span<const glm::uvec3> triangles, const geometry::PlacedShape& shape,
              std::span<float> share) const;
 
   std::vector<ShadowCaster> casters_;

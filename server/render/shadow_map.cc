@@ -82,7 +82,8 @@ void ShadowMap::fit(std::span<const ShadowCaster> casters) {
   // A texel's margin on each side for the comparison's neighbours.
   constexpr float kInner = kSize_px - 4;
   texels_per_unit_ = kInner / std::max({all.high.x - all.low.x, all.high.y - all.low.y, 1e-20f});
-  low_ = all.low - 2 / texels_per_unit_;
+  unit_of_texel_ = 1 / texels_per_unit_;
+  low_ = all.low - 2 * unit_of_texel_;
   tbb::parallel_for(tbb::blocked_range<size_t>(0, count, kChunk), [&](const tbb::blocked_range<size_t>& range) {
     for (size_t v = range.begin(); v != range.end(); ++v) {
       vertices_[v].x = (vertices_[v].x - low_.x) * texels_per_unit_;
@@ -103,15 +104,17 @@ void ShadowMap::rasterise(const ShadowCaster& caster, std::span<const Projected>
     const float abx = b.x - a.x, aby = b.y - a.y, acx = c.x - a.x, acy = c.y - a.y;
     const float area = abx * acy - aby * acx;
     if (area == 0 || (caster.encloses_volume && area * outward < 0)) continue;
-    const int x_begin = static_cast<int>(std::ceil(std::min({a.x, b.x, c.x}) - 0.5f));
-    const int x_end = static_cast<int>(std::floor(std::max({a.x, b.x, c.x}) - 0.5f));
-    const int y_begin = static_cast<int>(std::ceil(std::min({a.y, b.y, c.y}) - 0.5f));
-    const int y_end = static_cast<int>(std::floor(std::max({a.y, b.y, c.y}) - 0.5f));
+    // Texels whose centres, at halves, lie within the bounds; the map's margin keeps all of them inside it.
+    const int x_begin = static_cast<int>(std::min({a.x, b.x, c.x}) + 0.5f);
+    const int x_end = static_cast<int>(std::max({a.x, b.x, c.x}) + 0.5f);
+    const int y_begin = static_cast<int>(std::min({a.y, b.y, c.y}) + 0.5f);
+    const int y_end = static_cast<int>(std::max({a.y, b.y, c.y}) + 0.5f);
+    if (x_begin == x_end || y_begin == y_end) continue;
     const float inverse = 1 / area;
     const float largest = std::max({a.nearness, b.nearness, c.nearness});
-    for (int y = std::max(y_begin, 0); y <= std::min(y_end, kSize_px - 1); ++y) {
+    for (int y = y_begin; y < y_end; ++y) {
       const float dy = static_cast<float>(y) + 0.5f - a.y;
-      for (int x = std::max(x_begin, 0); x <= std::min(x_end, kSize_px - 1); ++x) {
+      for (int x = x_begin; x < x_end; ++x) {
         const float dx = static_cast<float>(x) + 0.5f - a.x;
         const float u = (dx * acy - dy * acx) * inverse;
         const float v = (abx * dy - aby * dx) * inverse;
@@ -153,13 +156,14 @@ void ShadowMap::draw(const LightStorage& light, const geometry::Bounds& bounds_m
 }
 
 float ShadowMap::visibility_at(const glm::vec3& point_mm, const glm::vec3& facet_normal) const {
+  const glm::vec3 way = directional_ ? ahead_ : point_mm - eye_mm_;
+  const float facing = -glm::dot(facet_normal, way);
+  if (!(facing > 0)) return 0;
   const Projected p = project(point_mm);
-  const glm::vec3 way = point_mm - eye_mm_;
-  const float cosine = std::abs(directional_ ? glm::dot(facet_normal, ahead_)
-                                             : glm::dot(facet_normal, way) / std::max(glm::length(way), 1e-20f));
-  const float slope = std::min(std::sqrt(std::max(0.0f, 1 - cosine * cosine)) / std::max(cosine, 1e-6f), kSteepest);
+  const float across2 = std::max(0.0f, glm::dot(way, way) - facing * facing);
+  const float slope = std::sqrt(std::min(across2 / (facing * facing), kSteepest * kSteepest));
   const float depth = directional_ ? -p.nearness : 1 / p.nearness;
-  const float texel_mm = (directional_ ? 1.0f : depth) / texels_per_unit_;
+  const float texel_mm = (directional_ ? 1.0f : depth) * unit_of_texel_;
   const float biased_depth = depth - texel_mm * (0.5f + slope);
   const float nearness = directional_ ? -biased_depth : 1 / std::max(biased_depth, 1e-20f);
   // Texel centres lie at halves.

@@ -32,7 +32,7 @@ class ShadowMap {
   void draw(const LightStorage& light, const geometry::Bounds& bounds_mm, std::span<const ShadowCaster> casters);
 
   /// The share of the light that arrives at a point of a facet, 0..1: four neighbouring texels compared, with a bias
-  /// that grows as the facet tilts away. Thread-safe between draws.
+  /// that grows as the facet tilts away; none where it faces away. Thread-safe between draws.
   float visibility_at(const glm::vec3& point_mm, const glm::vec3& facet_normal) const;
 
  private:
@@ -53,6 +53,7 @@ class ShadowMap {
   glm::vec3 right_{1, 0, 0}, up_{0, 1, 0}, ahead_{0, 0, 1};
   glm::vec2 low_{0};                 ///< corner of the map before fitting
   float texels_per_unit_ = 1;        ///< of the plane before fitting
+  float unit_of_texel_ = 1;          ///< its inverse
   std::vector<Projected> vertices_;  ///< of all casters
   tbb::enumerable_thread_specific<std::vector<float>> maps_;  ///< of each thread: the nearest wins, in whatever order
   std::vector<float> nearest_;       ///< [kSize_px²]; the lowest float where nothing is

@@ -144,4 +144,43 @@ std::shared_ptr<const SurfaceTopology> build_surface_topology(std::shared_ptr<co
   return surface;
 }
 
+OrderedSurface lay_out(const SurfaceTopology& surface) {
+  const geometry::MeshTopology& mesh = *surface.mesh;
+  OrderedSurface ordered;
+  std::vector<uint32_t>& source = ordered.source_of_vertex;
+  source.resize(mesh.vertex_count);
+  std::iota(source.begin(), source.end(), 0u);
+  std::stable_sort(source.begin(), source.end(),
+                   [&](uint32_t a, uint32_t b) { return surface.slot_of_vertex[a] < surface.slot_of_vertex[b]; });
+  std::vector<uint32_t> moved_to(mesh.vertex_count);
+  for (uint32_t v = 0; v < mesh.vertex_count; ++v) moved_to[source[v]] = v;
+
+  auto laid_out = std::make_shared<geometry::MeshTopology>();
+  laid_out->vertex_count = mesh.vertex_count;
+  laid_out->weld_count = mesh.weld_count;
+  laid_out->encloses_volume = mesh.encloses_volume;
+  laid_out->first_triangle = surface.first_corner;
+  laid_out->triangle_of_weld = surface.triangle_of_corner;
+  for (const glm::uvec3& t : surface.triangles) {
+    laid_out->triangles.emplace_back(moved_to[t.x], moved_to[t.y], moved_to[t.z]);
+  }
+  for (const uint32_t v : source) {
+    laid_out->uploaded_positions.push_back(mesh.uploaded_positions[v]);
+    laid_out->weld_of_vertex.push_back(surface.slot_of_vertex[v]);
+  }
+  auto result = std::make_shared<SurfaceTopology>();
+  result->mesh = laid_out;
+  result->slot_count = surface.slot_count;
+  result->slot_of_vertex = laid_out->weld_of_vertex;
+  result->triangles = laid_out->triangles;
+  result->first_corner = surface.first_corner;
+  result->triangle_of_corner = surface.triangle_of_corner;
+  for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
+    const bool first_of_weld = v == 0 || result->slot_of_vertex[v] != result->slot_of_vertex[v - 1];
+    (first_of_weld ? result->vertex_of_slot : result->twins).push_back(v);
+  }
+  ordered.surface = std::move(result);
+  return ordered;
+}
+
 }  // namespace diaphane::diffusion

@@ -28,4 +28,14 @@ struct SurfaceTopology {
 /// Orders `mesh`. About 0.3 µs a vertex. Thread-safe.
 std::shared_ptr<const SurfaceTopology> build_surface_topology(std::shared_ptr<const geometry::MeshTopology> mesh);
 
+/// A mesh whose vertices lie in the order of their slots, twins next to each other, and its triangles in the surface's:
+/// what is near in space is near in memory.
+struct OrderedSurface {
+  std::shared_ptr<const SurfaceTopology> surface;
+  std::vector<uint32_t> source_of_vertex;  ///< which vertex of the mesh before each one was
+};
+
+/// Lays the mesh of `surface` out anew. Thread-safe.
+OrderedSurface lay_out(const SurfaceTopology& surface);
+
 }  // namespace diaphane::diffusion

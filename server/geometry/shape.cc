@@ -50,27 +50,28 @@ std::vector<glm::vec3> compute_normals(const MeshTopology& topology, std::span<c
   return normals;
 }
 
-PlacedShape place(const MeshTopology& topology, const MeshShape& shape, const glm::mat4& scene_from_mesh,
-                  double millimetres_per_unit) {
-  PlacedShape placed;
-  const auto linear = glm::mat3(scene_from_mesh);
-  placed.flipped = glm::determinant(linear) < 0;
-  const auto scale = static_cast<float>(millimetres_per_unit);
+void place_positions(const MeshShape& shape, const glm::mat4& scene_from_mesh, double millimetres_per_unit,
+                     PlacedShape& placed) {
+  placed.flipped = glm::determinant(glm::mat3(scene_from_mesh)) < 0;
+  placed.normals.clear();
   placed.positions_mm.resize(shape.positions.size());
+  const auto scale = static_cast<float>(millimetres_per_unit);
   for_each(shape.positions.size(), [&](size_t v) {
     placed.positions_mm[v] = glm::vec3(scene_from_mesh * glm::vec4(shape.positions[v], 1)) * scale;
   });
+}
+
+void place_normals(const MeshTopology& topology, const MeshShape& shape, const glm::mat4& scene_from_mesh,
+                   PlacedShape& placed) {
   placed.normals = compute_normals(topology, placed.positions_mm);
   if (placed.flipped) {
     for (glm::vec3& n : placed.normals) n = -n;
   }
-  if (!shape.normals.empty()) {
-    const glm::mat3 normal_from_mesh = cofactors(linear) * (placed.flipped ? -1.0f : 1.0f);
-    for_each(shape.normals.size(), [&](size_t v) {
-      placed.normals[v] = normalised_or(normal_from_mesh * shape.normals[v], placed.normals[v]);
-    });
-  }
-  return placed;
+  if (shape.normals.empty()) return;
+  const glm::mat3 normal_from_mesh = cofactors(glm::mat3(scene_from_mesh)) * (placed.flipped ? -1.0f : 1.0f);
+  for_each(shape.normals.size(), [&](size_t v) {
+    placed.normals[v] = normalised_or(normal_from_mesh * shape.normals[v], placed.normals[v]);
+  });
 }
 
 Bounds bounds_of(std::span<const glm::vec3> positions) {

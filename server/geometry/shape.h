@@ -19,7 +19,7 @@ struct MeshShape {
 /// A shape placed in the scene: world axes, millimetres, unit normals that point outward.
 struct PlacedShape {
   std::vector<glm::vec3> positions_mm;  ///< [vertex_count]
-  std::vector<glm::vec3> normals;       ///< [vertex_count]
+  std::vector<glm::vec3> normals;       ///< [vertex_count], or empty while nobody has asked for them
   bool flipped = false;                 ///< the transform mirrors: triangles run clockwise
 };
 
@@ -28,10 +28,14 @@ struct Bounds {
   glm::vec3 highest{0};
 };
 
-/// Applies `scene_from_mesh`, then `millimetres_per_unit`; computes normals where `shape` has none, replaces given ones of
-/// no length by computed ones. Spread over all cores, as is compute_normals; the same bytes on any number of them.
-PlacedShape place(const MeshTopology& topology, const MeshShape& shape, const glm::mat4& scene_from_mesh,
-                  double millimetres_per_unit);
+/// Applies `scene_from_mesh`, then `millimetres_per_unit`, to the positions; leaves `placed` without normals. Spread over
+/// all cores, as are the others; the same bytes on any number of them.
+void place_positions(const MeshShape& shape, const glm::mat4& scene_from_mesh, double millimetres_per_unit,
+                     PlacedShape& placed);
+
+/// Gives `placed` its normals: those of `shape` turned; computed ones where it has none, or one of no length.
+void place_normals(const MeshTopology& topology, const MeshShape& shape, const glm::mat4& scene_from_mesh,
+                   PlacedShape& placed);
 
 /// Area-weighted unit normals, equal at all vertices of a weld. A weld with no area gets +z.
 std::vector<glm::vec3> compute_normals(const MeshTopology& topology, std::span<const glm::vec3> positions);

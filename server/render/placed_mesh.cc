@@ -1,20 +1,11 @@
 #include "render/placed_mesh.h"
 
-#include <atomic>
 #include <cmath>
 
 #include "glm/matrix.hpp"
+#include "render/generation.h"
 
 namespace diaphane::render {
-namespace {
-
-uint64_t next_generation() {
-  static std::atomic<uint64_t> last = 0;
-  return ++last;
-}
-
-}  // namespace
-
 float PlacedMesh::unit_mm() const {
   return static_cast<float>(millimetres_per_unit_ * std::cbrt(std::abs(glm::determinant(glm::mat3(scene_from_mesh_)))));
 }
@@ -27,7 +18,7 @@ void PlacedMesh::update(const scene::Mesh& mesh, double millimetres_per_unit, St
     return;
   }
   clock.run("place", [&] {
-    placed_ = geometry::place(*mesh.topology, *mesh.shape, mesh.scene_from_mesh, millimetres_per_unit);
+    geometry::place_positions(*mesh.shape, mesh.scene_from_mesh, millimetres_per_unit, placed_);
     bounds_mm_ = geometry::bounds_of(placed_.positions_mm);
   });
   topology_ = mesh.topology;
@@ -35,6 +26,16 @@ void PlacedMesh::update(const scene::Mesh& mesh, double millimetres_per_unit, St
   scene_from_mesh_ = mesh.scene_from_mesh;
   millimetres_per_unit_ = millimetres_per_unit;
   generation_ = next_generation();
+}
+
+void PlacedMesh::complete_normals(StageClock& clock) {
+  if (!placed_.normals.empty()) {
+    clock.sleep("normals");
+    return;
+  }
+  clock.run("normals", [&] {
+    geometry::place_normals(*topology_.lock(), *shape_.lock(), scene_from_mesh_, placed_);
+  });
 }
 
 }  // namespace diaphane::render

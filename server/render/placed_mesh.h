@@ -13,8 +13,10 @@ namespace diaphane::render {
 /// Follows a scene mesh from revision to revision and places it again only when it moved. One thread.
 class PlacedMesh {
  public:
-  /// Stage: place.
+  /// Positions alone. Stage: place.
   void update(const scene::Mesh& mesh, double millimetres_per_unit, StageClock& clock);
+  /// Normals too. The mesh of the last update must still be there. Stage: normals.
+  void complete_normals(StageClock& clock);
 
   const geometry::PlacedShape& shape() const { return placed_; }
   const geometry::Bounds& bounds_mm() const { return bounds_mm_; }

@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "diffusion/kernel_table.h"
+#include "render/generation.h"
+#include "tbb/blocked_range.h"
+#include "tbb/parallel_for.h"
 
 namespace diaphane::render {
 namespace {
@@ -16,8 +19,30 @@ float quarter_octave(float value) { return std::exp2(std::floor(4 * std::log2(va
 
 }  // namespace
 
-absl::Status RefinedMesh::update(const std::shared_ptr<const geometry::MeshTopology>& topology,
-                                 const PlacedMesh& placed, const optics::Coefficients& material, StageClock& clock) {
+void RefinedMesh::carry_over(const geometry::PlacedShape& placed) {
+  const std::vector<uint32_t>& source = ordered_.source_of_vertex;
+  const geometry::PlacedShape* from = &placed;
+  if (!parents_.empty()) {
+    extended_ = placed;
+    geometry::extend_positions(parents_, extended_.positions_mm);
+    geometry::extend_normals(parents_, extended_.normals);
+    from = &extended_;
+  }
+  normals_known_ = !from->normals.empty();
+  shape_.flipped = placed.flipped;
+  shape_.positions_mm.resize(source.size());
+  shape_.normals.resize(source.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, source.size(), 4096), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t v = range.begin(); v != range.end(); ++v) {
+      shape_.positions_mm[v] = from->positions_mm[source[v]];
+      if (normals_known_) shape_.normals[v] = from->normals[source[v]];
+    }
+  });
+}
+
+absl::Status RefinedMesh::update(const scene::Mesh& mesh, PlacedMesh& placed, const optics::Coefficients& material,
+                                 StageClock& clock) {
+  const std::shared_ptr<const geometry::MeshTopology>& topology = mesh.topology;
   const glm::vec3 smooth_mm = diffusion::smooth_distance_mm(optics::make_dipole(material));
   const float spacing_mm = quarter_octave(std::min({smooth_mm.x, smooth_mm.y, smooth_mm.z}));
   const float unit_mm = quarter_octave(std::max(placed.unit_mm(), 1e-12f));
@@ -32,25 +57,23 @@ absl::Status RefinedMesh::update(const std::shared_ptr<const geometry::MeshTopol
                                           .largest_spacing_mm = 2 * spacing_mm,
                                           .max_vertices = std::max(kMaxVertices, topology->vertex_count)});
       if (!refined.ok()) return refined.status();
-      refined_ = *std::move(refined);
+      parents_ = std::move(refined->parents);
+      ordered_ = diffusion::lay_out(*diffusion::build_surface_topology(std::move(refined->topology)));
       return absl::OkStatus();
     });
-    if (!split.ok()) return split;
+    if (!split.ok()) {
+      original_.reset();
+      return split;
+    }
     original_ = topology;
   }
-  if (!shape_reads_.renew({refined_.topology.get(), placed.generation()}) && !split_again) {
+  if (!shape_reads_.renew(placed.generation()) && !split_again) {
     clock.sleep("refine");
     return absl::OkStatus();
   }
-  ++generation_;
-  shape_ = &placed.shape();
-  if (refined_.parents.empty()) return absl::OkStatus();
-  clock.run("refine", [&] {
-    extended_ = placed.shape();
-    geometry::extend_positions(refined_.parents, extended_.positions_mm);
-    geometry::extend_normals(refined_.parents, extended_.normals);
-  });
-  shape_ = &extended_;
+  generation_ = next_generation();
+  if (!mesh.shape->normals.empty() || !parents_.empty()) placed.complete_normals(clock);
+  clock.run("refine", [&] { carry_over(placed.shape()); });
   return absl::OkStatus();
 }
 

@@ -58,17 +58,28 @@ void ScenePainter::gather_meshes(Job& job) {
 }
 
 void ScenePainter::update_shadows(Job& job) {
+  const bool refined = job.request.settings.technique == Technique::kIntegral;
   std::vector<uint64_t> reads;
-  for (const DrawnMesh& drawn : job.meshes) reads.push_back(drawn.state->placed.generation());
-  if (!shadow_reads_.renew(std::move(reads))) return;
   std::vector<ShadowCaster> casters;
   for (const DrawnMesh& drawn : job.meshes) {
-    const geometry::MeshTopology& topology = *drawn.mesh->topology;
-    const geometry::PlacedShape& shape = drawn.state->placed.shape();
+    const MeshState& state = *drawn.state;
+    reads.push_back(refined ? state.refined.generation() : state.placed.generation());
+    const geometry::MeshTopology& topology = refined ? *state.refined.topology() : *drawn.mesh->topology;
+    const geometry::PlacedShape& shape = refined ? state.refined.shape() : state.placed.shape();
     casters.push_back({topology.triangles, shape.positions_mm, topology.encloses_volume, shape.flipped});
   }
+  if (!shadow_reads_.renew(std::move(reads))) return;
   shadows_.set_casters(std::move(casters), job.bounds_mm);
   ++shadows_generation_;
+}
+
+absl::Status ScenePainter::refine(Job& job) {
+  for (const DrawnMesh& drawn : job.meshes) {
+    if (absl::Status status = check(job.cancelled); !status.ok()) return status;
+    absl::Status status = drawn.state->refined.update(*drawn.mesh, drawn.state->placed, drawn.material, job.clock);
+    if (!status.ok()) return status;
+  }
+  return absl::OkStatus();
 }
 
 void ScenePainter::bound_memory(const Job& job) {
@@ -112,22 +123,24 @@ absl::Status ScenePainter::update(Job& job) {
     return absl::FailedPreconditionError(fmt::format("{}: the integral takes bodies within ±{:g} mm of the origin",
                                                      job.request.scene->name, kLargestIntegral_mm));
   }
+  if (settings.technique == Technique::kIntegral) {
+    if (absl::Status refined = refine(job); !refined.ok()) return refined;
+  }
   if (shadowed) update_shadows(job);
   shading_.bind(std::span<const LightStorage>(job.lights));
   for (const DrawnMesh& drawn : job.meshes) {
     if (absl::Status status = check(job.cancelled); !status.ok()) return status;
     MeshState& state = *drawn.state;
     if (settings.technique == Technique::kIntegral) {
-      const RefinedMesh& refined = state.refined;
-      absl::Status status = state.refined.update(drawn.mesh->topology, state.placed, drawn.material, job.clock);
-      if (!status.ok()) return status;
-      state.light.update(refined.topology(),
-                         {refined.shape(), refined.generation(), job.lights, drawn.material, settings.quality,
-                          shadowed ? &shadows_ : nullptr, shadowed ? shadows_generation_ : 0},
+      RefinedMesh& refined = state.refined;
+      state.light.update(refined.surface(),
+                         {refined.shape(), refined.normals_to_fill(), refined.generation(), job.lights, drawn.material,
+                          settings.quality, shadowed ? &shadows_ : nullptr, shadowed ? shadows_generation_ : 0},
                          job.clock);
       state.gpu.update(refined.topology(), refined.shape(), refined.generation(), job.clock);
       state.gpu.update_radiosity(state.light.radiosity(), state.light.generation(), job.clock);
     } else {
+      state.placed.complete_normals(job.clock);
       state.gpu.update(drawn.mesh->topology, state.placed.shape(), state.placed.generation(), job.clock);
       if (settings.technique == Technique::kPaper) update_atlas(drawn, job);
     }

@@ -39,6 +39,7 @@ class ScenePainter {
 
   void gather_meshes(Job& job);
   void bound_memory(const Job& job);
+  absl::Status refine(Job& job);
   void update_shadows(Job& job);
   absl::Status update(Job& job);
   void update_atlas(const DrawnMesh& drawn, Job& job);

@@ -2,21 +2,16 @@
 
 namespace diaphane::render {
 
-void SurfaceLight::update(const std::shared_ptr<const geometry::MeshTopology>& topology, const Inputs& inputs,
+void SurfaceLight::update(const std::shared_ptr<const diffusion::SurfaceTopology>& surface, const Inputs& inputs,
                           StageClock& clock) {
-  if (integral_ == nullptr || topology_.lock() != topology) {
-    clock.run("order", [&] {
-      integral_ = std::make_unique<diffusion::DipoleIntegral>(diffusion::build_surface_topology(topology));
-    });
-    topology_ = topology;
-    radiosity_.assign(topology->vertex_count, glm::vec3(0));
+  if (integral_ == nullptr || &integral_->topology() != surface.get()) {
+    integral_ = std::make_unique<diffusion::DipoleIntegral>(surface);
+    radiosity_.assign(surface->mesh->vertex_count, glm::vec3(0));
     refit_reads_.forget();
     light_reads_.forget();
     flux_reads_.forget();
     material_reads_.forget();
     gather_reads_.forget();
-  } else {
-    clock.sleep("order");
   }
   const uint64_t placed = inputs.shape_generation;
   const geometry::PlacedShape& shape = inputs.shape;
@@ -30,10 +25,14 @@ void SurfaceLight::update(const std::shared_ptr<const geometry::MeshTopology>& t
     }
   };
 
-  stage("refit", refit_reads_.renew(placed), [&] {
-    integral_->update_positions(shape.positions_mm);
-    integral_->refit_geometry();
+  const bool moved = refit_reads_.renew(placed);
+  stage("normals", moved, [&] {
+    integral_->update_positions(shape.positions_mm, inputs.normals_to_fill);
+    if (shape.flipped) {
+      for (glm::vec3& n : inputs.normals_to_fill) n = -n;
+    }
   });
+  stage("refit", moved, [&] { integral_->refit_geometry(); });
   std::vector<LightStorage> lights(inputs.lights.begin(), inputs.lights.end());
   const bool relit = light_reads_.renew({placed, std::move(lights), refractive_index, inputs.shadows_generation});
   stage("irradiance", relit, [&] {

@@ -13,12 +13,13 @@
 
 namespace diaphane::render {
 
-/// Light on one mesh. Stages: refit, irradiance, flux, gather; each sleeps while what it reads is the same. One thread
+/// Light on one mesh. Stages: normals, refit, irradiance, flux, gather; each sleeps while what it reads is the same. One thread
 /// calls; work is spread over all cores. The same bytes on any number of threads.
 class SurfaceLight {
  public:
   struct Inputs {
     const geometry::PlacedShape& shape;
+    std::span<glm::vec3> normals_to_fill;  ///< the shape's own, where they are not known; else empty
     uint64_t shape_generation;
     std::span<const LightStorage> lights;
     const optics::Coefficients& material;
@@ -27,7 +28,7 @@ class SurfaceLight {
     uint64_t shadows_generation;  ///< of what casts them; 0 without
   };
 
-  void update(const std::shared_ptr<const geometry::MeshTopology>& topology, const Inputs& inputs, StageClock& clock);
+  void update(const std::shared_ptr<const diffusion::SurfaceTopology>& surface, const Inputs& inputs, StageClock& clock);
 
   /// B, RGB, W·mm⁻², a value a vertex. Valid until the next update.
   std::span<const glm::vec3> radiosity() const { return radiosity_; }
@@ -41,7 +42,6 @@ class SurfaceLight {
  private:
   using Materials = std::tuple<glm::vec3, glm::vec3, float>;
 
-  std::weak_ptr<const geometry::MeshTopology> topology_;
   std::unique_ptr<diffusion::DipoleIntegral> integral_;
   IrradianceStage irradiance_;
   std::vector<glm::vec3> radiosity_;

@@ -96,7 +96,7 @@ TEST_F(Renderer, IntegralSleepsUntilWhatAStageReadsChanges) {
   render(request);
   request.camera.eye = {10, 0, 60};
   auto stages = ran(render(request));
-  for (const char* stage : {"place", "refine", "order", "refit", "irradiance", "flux", "gather", "upload"}) {
+  for (const char* stage : {"place", "refine", "normals", "refit", "irradiance", "flux", "gather", "upload"}) {
     EXPECT_FALSE(stages.at(stage)) << stage;
   }
   EXPECT_TRUE(stages.at("draw"));

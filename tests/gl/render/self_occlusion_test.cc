@@ -94,6 +94,7 @@ TEST(SelfOcclusion, AgreesWithDepthOnTheBunny) {
   StageClock clock;
   PlacedMesh placed;
   placed.update(*scene->meshes[0], 1, clock);
+  placed.complete_normals(clock);
   GpuMesh mesh;
   mesh.update(scene->meshes[0]->topology, placed.shape(), placed.generation(), clock);
   shading->bind(material_uniforms(scene->materials[0].coefficients));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 
 namespace diaphane::diffusion {
@@ -17,6 +18,20 @@ inline Four load4(const float* from) {
 inline void store4(float* to, Four v) { std::memcpy(to, &v, sizeof(v)); }
 
 inline Four max4(Four a, Four b) { return a > b ? a : b; }
+
+/// Four comparisons: lanes are 0 or −1.
+typedef int32_t FourMask __attribute__((vector_size(16)));
+
+/// Bit k is set where lane k is.
+inline uint32_t bits_of(FourMask mask) {
+#if defined(__SSE2__)
+  Four lanes;
+  std::memcpy(&lanes, &mask, sizeof(lanes));
+  return static_cast<uint32_t>(__builtin_ia32_movmskps(lanes));
+#else
+  return (mask[0] & 1u) | (mask[1] & 2u) | (mask[2] & 4u) | (mask[3] & 8u);
+#endif
+}
 
 inline Four sqrt4(Four v) { return Four{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])}; }
 

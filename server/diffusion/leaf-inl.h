@@ -8,6 +8,7 @@
 #endif
 
 #include "diffusion/far_field-inl.h"
+#include "diffusion/four.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace diaphane::diffusion::HWY_NAMESPACE {
@@ -87,7 +88,7 @@ HWY_INLINE void add_expansion(const Expansion& expansion, LeafVector& leaf) {
   }
 }
 
-/// Sorts the children of the nodes to be opened into moments and points of either side.
+/// Sorts the children of the nodes to be opened into moments and points of either side; four siblings at a time.
 HWY_INLINE void open_nodes(const GatherInput& input, const Receiver& receiver, const uint32_t* nodes, size_t node_count,
                            GatherScratch& scratch) {
   for (LeafSources& side : scratch.sides) {
@@ -96,27 +97,33 @@ HWY_INLINE void open_nodes(const GatherInput& input, const Receiver& receiver, c
     side.points.resize(32 * node_count);
     side.moments.resize(8 * node_count);
   }
+  const glm::vec3& facing = receiver.facing;
   const float z2 = input.kernels->smooth_mm() * input.kernels->smooth_mm();
   const float opening2 = input.settings.leaf_opening * input.settings.leaf_opening;
+  const float cosine_area = kOppositeCosine * receiver.area;
+  const float depth2_area2 = kOppositeDepth * kOppositeDepth * receiver.area * receiver.area;
+  const float own_spacing2 = receiver.spacing * receiver.spacing;
+  const Four zero{};
   for (size_t i = 0; i < node_count; ++i) {
     const float* block = input.tree->block(1, nodes[i]);
-    for (uint32_t k = 0; k < 4; ++k) {
-      const float* column = block + k;
-      if (!(column[4 * kFluxR] + column[4 * kFluxG] + column[4 * kFluxB] > 0)) continue;
-      const glm::vec3& facing = receiver.facing;
-      const float turn =
-          facing.x * column[4 * kFacingX] + facing.y * column[4 * kFacingY] + facing.z * column[4 * kFacingZ];
-      const float dx = column[4 * kCentreX] - receiver.centre_mm.x, dy = column[4 * kCentreY] - receiver.centre_mm.y;
-      const float dz = column[4 * kCentreZ] - receiver.centre_mm.z;
-      const float depth = std::abs(facing.x * dx + facing.y * dy + facing.z * dz);
-      const bool opposite =
-          turn < kOppositeCosine * receiver.area * column[4 * kArea] &&
-          depth > kOppositeDepth * receiver.area * std::max(receiver.spacing, 0.5f * std::sqrt(column[4 * kArea]));
-      LeafSources& side = scratch.sides[opposite ? kOpposite : kSame];
-      const float gap = std::max(0.0f, std::sqrt(dx * dx + dy * dy + dz * dz) - receiver.radius);
-      const float gap2 = gap * gap + z2, radius = column[4 * kRadius];
-      if (column[4 * kSpread2] < opening2 * gap2 && radius * radius < 1.2f * gap2) {
-        side.moments[side.moment_count++] = column;
+    const auto row = [&](uint32_t field) HWY_ATTR { return load4(block + 4 * field); };
+    const uint32_t lit = bits_of(row(kFluxR) + row(kFluxG) + row(kFluxB) > zero);
+    const Four dx = row(kCentreX) - receiver.centre_mm.x, dy = row(kCentreY) - receiver.centre_mm.y;
+    const Four dz = row(kCentreZ) - receiver.centre_mm.z;
+    const Four area = row(kArea), radius = row(kRadius);
+    const Four turn = facing.x * row(kFacingX) + facing.y * row(kFacingY) + facing.z * row(kFacingZ);
+    const Four depth = facing.x * dx + facing.y * dy + facing.z * dz;
+    const Four spacing2 = max4(zero + own_spacing2, 0.25f * area);
+    const uint32_t opposite =
+        bits_of((turn < cosine_area * area) & (depth * depth > depth2_area2 * spacing2));
+    const Four gap = max4(zero, sqrt4(dx * dx + dy * dy + dz * dz) - receiver.radius);
+    const Four gap2 = gap * gap + z2;
+    const uint32_t by_moments = bits_of((row(kSpread2) < opening2 * gap2) & (radius * radius < 1.2f * gap2));
+    for (uint32_t left = lit; left != 0; left &= left - 1) {
+      const auto k = static_cast<uint32_t>(std::countr_zero(left));
+      LeafSources& side = scratch.sides[(opposite >> k) & 1 ? kOpposite : kSame];
+      if ((by_moments >> k) & 1) {
+        side.moments[side.moment_count++] = block + k;
         continue;
       }
       const uint32_t first = 16 * nodes[i] + 4 * k;

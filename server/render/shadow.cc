@@ -48,16 +48,14 @@ glm::vec3 towards_sample(const LightStorage& light, const glm::vec3& point_mm, i
 
 struct Facet {
   glm::vec3 centroid_mm;
-  glm::vec3 normal;  ///< unit, outward; none without an area
+  glm::vec3 across;  ///< the outward normal, twice the area long
 };
 
-Facet facet_of(const geometry::PlacedShape& shape, const glm::uvec3& i) {
+inline Facet facet_of(const geometry::PlacedShape& shape, const glm::uvec3& i) {
   const glm::vec3& a = shape.positions_mm[i.x];
   const glm::vec3& b = shape.positions_mm[i.y];
   const glm::vec3& c = shape.positions_mm[i.z];
-  const glm::vec3 across = glm::cross(b - a, c - a) * (shape.flipped ? -1.0f : 1.0f);
-  const float length2 = glm::dot(across, across);
-  return {(a + b + c) / 3.0f, length2 > 0 ? across / std::sqrt(length2) : glm::vec3(0)};
+  return {(a + b + c) * (1.0f / 3), glm::cross(b - a, c - a) * (shape.flipped ? -1.0f : 1.0f)};
 }
 
 }  // namespace
@@ -170,7 +168,7 @@ void ShadowScene::visibility(const LightStorage& light, std::span<const glm::uve
                     [&](const tbb::blocked_range<size_t>& range) {
                       for (size_t t = range.begin(); t != range.end(); ++t) {
                         const Facet facet = facet_of(shape, triangles[t]);
-                        share[t] = map_.visibility_at(facet.centroid_mm, facet.normal);
+                        share[t] = map_.visibility_at(facet.centroid_mm, facet.across);
                       }
                     });
 }
@@ -187,7 +185,8 @@ void ShadowScene::trace(const LightStorage& light, std::span<const glm::uvec3> t
       for (size_t i = 0; i < kPacket; ++i) {
         // Lanes without a triangle repeat the first one: Embree checks them all.
         const Facet facet = facet_of(shape, triangles[first + (i < count ? i : 0)]);
-        starts[i] = facet.centroid_mm + embree_->offset_mm * facet.normal;
+        const float length = glm::length(facet.across);
+        starts[i] = facet.centroid_mm + (length > 0 ? embree_->offset_mm / length : 0.0f) * facet.across;
       }
       float seen[kPacket] = {};
       for (int sample = 0; sample < samples; ++sample) {

@@ -24,6 +24,9 @@ glm::vec3 centre_of(const geometry::Bounds& bounds) { return 0.5f * (bounds.lowe
 
 float radius_of(const geometry::Bounds& bounds) { return 0.5f * glm::distance(bounds.lowest, bounds.highest); }
 
+float least(float a, float b, float c) { return std::min(std::min(a, b), c); }
+float most(float a, float b, float c) { return std::max(std::max(a, b), c); }
+
 }  // namespace
 
 bool ShadowMap::serves(const LightStorage& light, const geometry::Bounds& bounds_mm) {
@@ -105,13 +108,13 @@ void ShadowMap::rasterise(const ShadowCaster& caster, std::span<const Projected>
     const float area = abx * acy - aby * acx;
     if (area == 0 || (caster.encloses_volume && area * outward < 0)) continue;
     // Texels whose centres, at halves, lie within the bounds; the map's margin keeps all of them inside it.
-    const int x_begin = static_cast<int>(std::min({a.x, b.x, c.x}) + 0.5f);
-    const int x_end = static_cast<int>(std::max({a.x, b.x, c.x}) + 0.5f);
-    const int y_begin = static_cast<int>(std::min({a.y, b.y, c.y}) + 0.5f);
-    const int y_end = static_cast<int>(std::max({a.y, b.y, c.y}) + 0.5f);
+    const int x_begin = static_cast<int>(least(a.x, b.x, c.x) + 0.5f);
+    const int x_end = static_cast<int>(most(a.x, b.x, c.x) + 0.5f);
+    const int y_begin = static_cast<int>(least(a.y, b.y, c.y) + 0.5f);
+    const int y_end = static_cast<int>(most(a.y, b.y, c.y) + 0.5f);
     if (x_begin == x_end || y_begin == y_end) continue;
     const float inverse = 1 / area;
-    const float largest = std::max({a.nearness, b.nearness, c.nearness});
+    const float largest = most(a.nearness, b.nearness, c.nearness);
     for (int y = y_begin; y < y_end; ++y) {
       const float dy = static_cast<float>(y) + 0.5f - a.y;
       for (int x = x_begin; x < x_end; ++x) {
@@ -155,14 +158,16 @@ void ShadowMap::draw(const LightStorage& light, const geometry::Bounds& bounds_m
   });
 }
 
-float ShadowMap::visibility_at(const glm::vec3& point_mm, const glm::vec3& facet_normal) const {
-  const glm::vec3 way = directional_ ? ahead_ : point_mm - eye_mm_;
-  const float facing = -glm::dot(facet_normal, way);
+float ShadowMap::visibility_at(const glm::vec3& point_mm, const glm::vec3& across) const {
+  const glm::vec3 from_eye = point_mm - eye_mm_;
+  const glm::vec3& way = directional_ ? ahead_ : from_eye;
+  const float facing = -glm::dot(across, way);
   if (!(facing > 0)) return 0;
+  const float facing2 = facing * facing;
+  const float tilt2 = glm::dot(way, way) * glm::dot(across, across) - facing2;
+  const float slope = std::sqrt(std::clamp(tilt2 / facing2, 0.0f, kSteepest * kSteepest));
   const Projected p = project(point_mm);
-  const float across2 = std::max(0.0f, glm::dot(way, way) - facing * facing);
-  const float slope = std::sqrt(std::min(across2 / (facing * facing), kSteepest * kSteepest));
-  const float depth = directional_ ? -p.nearness : 1 / p.nearness;
+  const float depth = glm::dot(from_eye, ahead_);
   const float texel_mm = (directional_ ? 1.0f : depth) * unit_of_texel_;
   const float biased_depth = depth - texel_mm * (0.5f + slope);
   const float nearness = directional_ ? -biased_depth : 1 / std::max(biased_depth, 1e-20f);

@@ -31,9 +31,10 @@ class ShadowMap {
   /// Draws the casters. One thread calls; memory is kept from call to call.
   void draw(const LightStorage& light, const geometry::Bounds& bounds_mm, std::span<const ShadowCaster> casters);
 
-  /// The share of the light that arrives at a point of a facet, 0..1: four neighbouring texels compared, with a bias
-  /// that grows as the facet tilts away; none where it faces away. Thread-safe between draws.
-  float visibility_at(const glm::vec3& point_mm, const glm::vec3& facet_normal) const;
+  /// The share of the light that arrives at a point of a facet, 0..1, `across` its outward normal of any length: four
+  /// neighbouring texels compared, with a bias that grows as the facet tilts away; none where it faces away.
+  /// Thread-safe between draws.
+  float visibility_at(const glm::vec3& point_mm, const glm::vec3& across) const;
 
  private:
   /// A point in texels, and how near it is to the light: 1/depth of a point light, −depth of a directional one; linear

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "diffusion/kernel_table.h"
+#include "glm/geometric.hpp"
 #include "render/generation.h"
 #include "tbb/blocked_range.h"
 #include "tbb/parallel_for.h"
@@ -19,25 +20,47 @@ float quarter_octave(float value) { return std::exp2(std::floor(4 * std::log2(va
 
 }  // namespace
 
+void RefinedMesh::lay_out(geometry::SubdividedMesh refined, uint32_t original_count) {
+  original_count_ = original_count;
+  ordered_ = diffusion::lay_out(*diffusion::build_surface_topology(std::move(refined.topology)));
+  const std::vector<uint32_t>& source = ordered_.source_of_vertex;
+  std::vector<uint32_t> moved_to(source.size());
+  for (uint32_t v = 0; v < source.size(); ++v) moved_to[source[v]] = v;
+  midpoints_.clear();
+  for (uint32_t i = 0; i < refined.parents.size(); ++i) {
+    const glm::uvec2& p = refined.parents[i];
+    midpoints_.push_back({moved_to[original_count + i], moved_to[p.x], moved_to[p.y]});
+  }
+}
+
 void RefinedMesh::carry_over(const geometry::PlacedShape& placed) {
   const std::vector<uint32_t>& source = ordered_.source_of_vertex;
-  const geometry::PlacedShape* from = &placed;
-  if (!parents_.empty()) {
-    extended_ = placed;
-    geometry::extend_positions(parents_, extended_.positions_mm);
-    geometry::extend_normals(parents_, extended_.normals);
-    from = &extended_;
-  }
-  normals_known_ = !from->normals.empty();
+  normals_given_ = !placed.normals.empty();
   shape_.flipped = placed.flipped;
   shape_.positions_mm.resize(source.size());
   shape_.normals.resize(source.size());
   tbb::parallel_for(tbb::blocked_range<size_t>(0, source.size(), 4096), [&](const tbb::blocked_range<size_t>& range) {
     for (size_t v = range.begin(); v != range.end(); ++v) {
-      shape_.positions_mm[v] = from->positions_mm[source[v]];
-      if (normals_known_) shape_.normals[v] = from->normals[source[v]];
+      if (source[v] >= original_count_) continue;
+      shape_.positions_mm[v] = placed.positions_mm[source[v]];
+      if (normals_given_) shape_.normals[v] = placed.normals[source[v]];
     }
   });
+  for (const Midpoint& m : midpoints_) {
+    shape_.positions_mm[m.vertex] = 0.5f * (shape_.positions_mm[m.a] + shape_.positions_mm[m.b]);
+  }
+  if (normals_given_) complete_normals();
+}
+
+void RefinedMesh::complete_normals() {
+  if (!normals_given_ && shape_.flipped) {
+    for (glm::vec3& n : shape_.normals) n = -n;
+  }
+  for (const Midpoint& m : midpoints_) {
+    const glm::vec3 sum = shape_.normals[m.a] + shape_.normals[m.b];
+    const float length = glm::length(sum);
+    shape_.normals[m.vertex] = length > 1e-6f ? sum / length : shape_.normals[m.a];
+  }
 }
 
 absl::Status RefinedMesh::update(const scene::Mesh& mesh, PlacedMesh& placed, const optics::Coefficients& material,
@@ -57,8 +80,7 @@ absl::Status RefinedMesh::update(const scene::Mesh& mesh, PlacedMesh& placed, co
                                           .largest_spacing_mm = 2 * spacing_mm,
                                           .max_vertices = std::max(kMaxVertices, topology->vertex_count)});
       if (!refined.ok()) return refined.status();
-      parents_ = std::move(refined->parents);
-      ordered_ = diffusion::lay_out(*diffusion::build_surface_topology(std::move(refined->topology)));
+      lay_out(*std::move(refined), topology->vertex_count);
       return absl::OkStatus();
     });
     if (!split.ok()) {
@@ -72,7 +94,7 @@ absl::Status RefinedMesh::update(const scene::Mesh& mesh, PlacedMesh& placed, co
     return absl::OkStatus();
   }
   generation_ = next_generation();
-  if (!mesh.shape->normals.empty() || !parents_.empty()) placed.complete_normals(clock);
+  if (!mesh.shape->normals.empty()) placed.complete_normals(clock);
   clock.run("refine", [&] { carry_over(placed.shape()); });
   return absl::OkStatus();
 }

@@ -19,27 +19,37 @@ namespace diaphane::render {
 /// thread.
 class RefinedMesh {
  public:
-  /// Takes `placed`'s normals where the client gave some or triangles are split, else leaves them to whoever fills
-  /// normals_to_fill(). Stage: refine.
+  /// Takes the normals that the client gave; else leaves them to whoever calls fill_normals(). Stage: refine.
   absl::Status update(const scene::Mesh& mesh, PlacedMesh& placed, const optics::Coefficients& material,
                       StageClock& clock);
 
   const std::shared_ptr<const diffusion::SurfaceTopology>& surface() const { return ordered_.surface; }
   const std::shared_ptr<const geometry::MeshTopology>& topology() const { return ordered_.surface->mesh; }
   const geometry::PlacedShape& shape() const { return shape_; }
-  /// Room for shape().normals of the present generation; empty where they are known.
-  std::span<glm::vec3> normals_to_fill() { return normals_known_ ? std::span<glm::vec3>() : shape_.normals; }
+  /// Where the client gave no normals: calls fill(span) with room for area-weighted ones of the unmirrored triangles, and
+  /// makes of them shape().normals, interpolated along split edges. Else calls fill(nothing).
+  template <typename Fill>
+  void fill_normals(const Fill& fill) {
+    fill(normals_given_ ? std::span<glm::vec3>() : std::span<glm::vec3>(shape_.normals));
+    if (!normals_given_) complete_normals();
+  }
   /// Another number whenever topology or shape change; no two meshes ever share one.
   uint64_t generation() const { return generation_; }
 
  private:
+  /// A vertex half way between two others that come before it in this order.
+  struct Midpoint {
+    uint32_t vertex, a, b;
+  };
+  void lay_out(geometry::SubdividedMesh refined, uint32_t original_count);
   void carry_over(const geometry::PlacedShape& placed);
+  void complete_normals();
 
-  std::vector<glm::uvec2> parents_;  ///< of the vertices that splitting added
   diffusion::OrderedSurface ordered_;
-  geometry::PlacedShape extended_;  ///< before the layout; unused while no triangle is split
+  uint32_t original_count_ = 0;  ///< sources below are the mesh's own vertices
+  std::vector<Midpoint> midpoints_;
   geometry::PlacedShape shape_;
-  bool normals_known_ = false;
+  bool normals_given_ = false;
   std::weak_ptr<const geometry::MeshTopology> original_;
   Memo<std::tuple<float, float>> splitting_reads_;  ///< scale of a mesh unit in mm and spacing in mm, both in steps
   Memo<uint64_t> shape_reads_;

@@ -133,9 +133,8 @@ absl::Status ScenePainter::update(Job& job) {
     MeshState& state = *drawn.state;
     if (settings.technique == Technique::kIntegral) {
       RefinedMesh& refined = state.refined;
-      state.light.update(refined.surface(),
-                         {refined.shape(), refined.normals_to_fill(), refined.generation(), job.lights, drawn.material,
-                          settings.quality, shadowed ? &shadows_ : nullptr, shadowed ? shadows_generation_ : 0},
+      state.light.update({refined, job.lights, drawn.material, settings.quality, shadowed ? &shadows_ : nullptr,
+                          shadowed ? shadows_generation_ : 0},
                          job.clock);
       state.gpu.update(refined.topology(), refined.shape(), refined.generation(), job.clock);
       state.gpu.update_radiosity(state.light.radiosity(), state.light.generation(), job.clock);

@@ -17,6 +17,10 @@ namespace {
 constexpr float kNearestLight = 1.25f;
 constexpr float kNothing = std::numeric_limits<float>::lowest();
 constexpr size_t kChunk = 4096;
+
+/// A texel or two for each vertex: E is not asked for more finely than that.
+int size_for(size_t vertices) { return vertices < 60'000 ? 256 : vertices < 500'000 ? 512 : 1024; }
+
 // Beyond this the cosine at which light enters is small enough for any error to drown.
 constexpr float kSteepest = 8;
 
@@ -65,6 +69,7 @@ void ShadowMap::fit(std::span<const ShadowCaster> casters) {
   size_t count = 0;
   for (const ShadowCaster& caster : casters) count += caster.positions_mm.size();
   vertices_.resize(count);
+  size_px_ = size_for(count);
   Extent all;
   size_t first = 0;
   for (const ShadowCaster& caster : casters) {
@@ -82,9 +87,9 @@ void ShadowMap::fit(std::span<const ShadowCaster> casters) {
     all = merge(all, extent);
     first += caster.positions_mm.size();
   }
-  // A texel's margin on each side for the comparison's neighbours.
-  constexpr float kInner = kSize_px - 4;
-  texels_per_unit_ = kInner / std::max({all.high.x - all.low.x, all.high.y - all.low.y, 1e-20f});
+  // A margin of two texels on each side for the comparison's neighbours.
+  const auto inner = static_cast<float>(size_px_ - 4);
+  texels_per_unit_ = inner / std::max({all.high.x - all.low.x, all.high.y - all.low.y, 1e-20f});
   unit_of_texel_ = 1 / texels_per_unit_;
   low_ = all.low - 2 * unit_of_texel_;
   tbb::parallel_for(tbb::blocked_range<size_t>(0, count, kChunk), [&](const tbb::blocked_range<size_t>& range) {
@@ -114,17 +119,19 @@ void ShadowMap::rasterise(const ShadowCaster& caster, std::span<const Projected>
     const int y_end = static_cast<int>(most(a.y, b.y, c.y) + 0.5f);
     if (x_begin == x_end || y_begin == y_end) continue;
     const float inverse = 1 / area;
-    const float largest = most(a.nearness, b.nearness, c.nearness);
+    const float du = acy * inverse, dv = -aby * inverse;
+    const float to_b = b.nearness - a.nearness, to_c = c.nearness - a.nearness;
+    const float nearest_corner = most(a.nearness, b.nearness, c.nearness);
+    const float dx = static_cast<float>(x_begin) + 0.5f - a.x;
     for (int y = y_begin; y < y_end; ++y) {
       const float dy = static_cast<float>(y) + 0.5f - a.y;
-      for (int x = x_begin; x < x_end; ++x) {
-        const float dx = static_cast<float>(x) + 0.5f - a.x;
-        const float u = (dx * acy - dy * acx) * inverse;
-        const float v = (abx * dy - aby * dx) * inverse;
+      float u = (dx * acy - dy * acx) * inverse;
+      float v = (abx * dy - aby * dx) * inverse;
+      float* texels = nearest + static_cast<ptrdiff_t>(y) * size_px_;
+      for (int x = x_begin; x < x_end; ++x, u += du, v += dv) {
         if (u < 0 || v < 0 || u + v > 1) continue;
-        const float here = a.nearness + u * (b.nearness - a.nearness) + v * (c.nearness - a.nearness);
-        float& texel = nearest[y * kSize_px + x];
-        texel = std::max(texel, std::min(here, largest));
+        const float here = std::min(a.nearness + u * to_b + v * to_c, nearest_corner);
+        texels[x] = texels[x] < here ? here : texels[x];
       }
     }
   }
@@ -134,21 +141,21 @@ void ShadowMap::draw(const LightStorage& light, const geometry::Bounds& bounds_m
                      std::span<const ShadowCaster> casters) {
   aim(light, bounds_mm);
   fit(casters);
-  constexpr size_t kTexels = size_t{kSize_px} * kSize_px;
-  for (std::vector<float>& map : maps_) std::fill(map.begin(), map.end(), kNothing);
+  const size_t texel_count = static_cast<size_t>(size_px_) * size_px_;
+  for (std::vector<float>& map : maps_) map.assign(texel_count, kNothing);
   size_t first = 0;
   for (const ShadowCaster& caster : casters) {
     const std::span<const Projected> vertices(vertices_.data() + first, caster.positions_mm.size());
     tbb::parallel_for(
         tbb::blocked_range<size_t>(0, caster.triangles.size(), kChunk), [&](const tbb::blocked_range<size_t>& range) {
           std::vector<float>& map = maps_.local();
-          if (map.empty()) map.assign(kTexels, kNothing);
+          if (map.empty()) map.assign(texel_count, kNothing);
           rasterise(caster, vertices, range.begin(), range.end(), map.data());
         });
     first += caster.positions_mm.size();
   }
-  nearest_.resize(kTexels);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, kTexels, 16 * kChunk), [&](const tbb::blocked_range<size_t>& range) {
+  nearest_.resize(texel_count);
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, texel_count, 16 * kChunk), [&](const tbb::blocked_range<size_t>& range) {
     std::fill(&nearest_[range.begin()], nearest_.data() + range.end(), kNothing);
     for (const std::vector<float>& map : maps_) {
       const float* from = map.data();
@@ -172,14 +179,15 @@ float ShadowMap::visibility_at(const glm::vec3& point_mm, const glm::vec3& acros
   const float biased_depth = depth - texel_mm * (0.5f + slope);
   const float nearness = directional_ ? -biased_depth : 1 / std::max(biased_depth, 1e-20f);
   // Texel centres lie at halves.
-  const float x = std::clamp((p.x - low_.x) * texels_per_unit_ - 0.5f, 0.0f, kSize_px - 1.001f);
-  const float y = std::clamp((p.y - low_.y) * texels_per_unit_ - 0.5f, 0.0f, kSize_px - 1.001f);
+  const float largest = static_cast<float>(size_px_) - 1.001f;
+  const float x = std::clamp((p.x - low_.x) * texels_per_unit_ - 0.5f, 0.0f, largest);
+  const float y = std::clamp((p.y - low_.y) * texels_per_unit_ - 0.5f, 0.0f, largest);
   const int column = static_cast<int>(x), row = static_cast<int>(y);
   const float right = x - static_cast<float>(column), above = y - static_cast<float>(row);
-  const float* texels = &nearest_[static_cast<size_t>(row) * kSize_px + static_cast<size_t>(column)];
+  const float* texels = &nearest_[static_cast<size_t>(row) * size_px_ + static_cast<size_t>(column)];
   const auto seen = [&](int offset) { return texels[offset] <= nearness ? 1.0f : 0.0f; };
   const float low = seen(0) + right * (seen(1) - seen(0));
-  const float high = seen(kSize_px) + right * (seen(kSize_px + 1) - seen(kSize_px));
+  const float high = seen(size_px_) + right * (seen(size_px_ + 1) - seen(size_px_));
   return low + above * (high - low);
 }
 

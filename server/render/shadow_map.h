@@ -22,8 +22,6 @@ struct ShadowCaster {
 /// One light's view of all casters, fitted to them. Work is spread over all cores; the same bytes on any number of them.
 class ShadowMap {
  public:
-  static constexpr int kSize_px = 512;
-
   /// Whether a map can show what `light` sees of a scene within `bounds_mm`: it has no radius, and is directional or
   /// well outside.
   static bool serves(const LightStorage& light, const geometry::Bounds& bounds_mm);
@@ -57,7 +55,8 @@ class ShadowMap {
   float unit_of_texel_ = 1;          ///< its inverse
   std::vector<Projected> vertices_;  ///< of all casters
   tbb::enumerable_thread_specific<std::vector<float>> maps_;  ///< of each thread: the nearest wins, in whatever order
-  std::vector<float> nearest_;       ///< [kSize_px²]; the lowest float where nothing is
+  int size_px_ = 256;
+  std::vector<float> nearest_;  ///< [size_px_²]; the lowest float where nothing is
 };
 
 }  // namespace diaphane::render

@@ -2,8 +2,8 @@
 
 namespace diaphane::render {
 
-void SurfaceLight::update(const std::shared_ptr<const diffusion::SurfaceTopology>& surface, const Inputs& inputs,
-                          StageClock& clock) {
+void SurfaceLight::update(const Inputs& inputs, StageClock& clock) {
+  const std::shared_ptr<const diffusion::SurfaceTopology>& surface = inputs.mesh.surface();
   if (integral_ == nullptr || &integral_->topology() != surface.get()) {
     integral_ = std::make_unique<diffusion::DipoleIntegral>(surface);
     radiosity_.assign(surface->mesh->vertex_count, glm::vec3(0));
@@ -13,8 +13,8 @@ void SurfaceLight::update(const std::shared_ptr<const diffusion::SurfaceTopology
     material_reads_.forget();
     gather_reads_.forget();
   }
-  const uint64_t placed = inputs.shape_generation;
-  const geometry::PlacedShape& shape = inputs.shape;
+  const uint64_t placed = inputs.mesh.generation();
+  const geometry::PlacedShape& shape = inputs.mesh.shape();
   const float refractive_index = inputs.material.refractive_index;
   const Materials material{inputs.material.absorption_mm, inputs.material.reduced_scattering_mm, refractive_index};
   const auto stage = [&](std::string_view name, bool stale, auto&& work) {
@@ -27,10 +27,9 @@ void SurfaceLight::update(const std::shared_ptr<const diffusion::SurfaceTopology
 
   const bool moved = refit_reads_.renew(placed);
   stage("normals", moved, [&] {
-    integral_->update_positions(shape.positions_mm, inputs.normals_to_fill);
-    if (shape.flipped) {
-      for (glm::vec3& n : inputs.normals_to_fill) n = -n;
-    }
+    inputs.mesh.fill_normals([&](std::span<glm::vec3> normals) {
+      integral_->update_positions(shape.positions_mm, normals);
+    });
   });
   stage("refit", moved, [&] { integral_->refit_geometry(); });
   std::vector<LightStorage> lights(inputs.lights.begin(), inputs.lights.end());

@@ -9,6 +9,7 @@
 #include "diffusion/dipole_integral.h"
 #include "render/irradiance.h"
 #include "render/memo.h"
+#include "render/refined_mesh.h"
 #include "render/stage_clock.h"
 
 namespace diaphane::render {
@@ -18,9 +19,7 @@ namespace diaphane::render {
 class SurfaceLight {
  public:
   struct Inputs {
-    const geometry::PlacedShape& shape;
-    std::span<glm::vec3> normals_to_fill;  ///< the shape's own, where they are not known; else empty
-    uint64_t shape_generation;
+    RefinedMesh& mesh;  ///< gets its normals here
     std::span<const LightStorage> lights;
     const optics::Coefficients& material;
     diffusion::Quality quality;
@@ -28,7 +27,7 @@ class SurfaceLight {
     uint64_t shadows_generation;  ///< of what casts them; 0 without
   };
 
-  void update(const std::shared_ptr<const diffusion::SurfaceTopology>& surface, const Inputs& inputs, StageClock& clock);
+  void update(const Inputs& inputs, StageClock& clock);
 
   /// B, RGB, W·mm⁻², a value a vertex. Valid until the next update.
   std::span<const glm::vec3> radiosity() const { return radiosity_; }

@@ -19,6 +19,14 @@ using ::testing::HasSubstr;
 const std::vector<glm::vec3> kSquare = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 const std::vector<glm::uvec3> kTriangles = {{0, 1, 2}, {3, 4, 5}};
 
+PlacedShape place(const MeshTopology& topology, const MeshShape& shape, const glm::mat4& scene_from_mesh,
+                  double scale) {
+  PlacedShape placed;
+  place_positions(shape, scene_from_mesh, scale, placed);
+  place_normals(topology, shape, scene_from_mesh, placed);
+  return placed;
+}
+
 TEST(BuildTopology, WeldsBitEqualPositions) {
   const auto mesh = build_topology(kSquare, kTriangles);
   ASSERT_TRUE(mesh.ok());

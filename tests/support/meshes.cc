@@ -87,6 +87,12 @@ void scale_to(Mesh& mesh, float extent_mm) {
   for (glm::vec3& p : mesh.positions_mm) p = (p - centre) * scale;
 }
 
+float radius_of(const Mesh& mesh) {
+  float radius = 0;
+  for (const glm::vec3& p : mesh.positions_mm) radius = std::max(radius, glm::length(p));
+  return radius;
+}
+
 void compute_normals(Mesh& mesh) {
   const auto topology = geometry::build_topology(mesh.positions_mm, mesh.triangles);
   mesh.normals = geometry::compute_normals(**topology, mesh.positions_mm);

@@ -29,6 +29,9 @@ std::optional<Mesh> read_mesh(const std::string& path);
 /// Moves the bounds' centre to the origin and scales the longest extent to `extent_mm`.
 void scale_to(Mesh& mesh, float extent_mm);
 
+/// The distance of the farthest vertex from the origin, mm.
+float radius_of(const Mesh& mesh);
+
 /// Replaces the normals by area-weighted ones of the welded surface.
 void compute_normals(Mesh& mesh);
 

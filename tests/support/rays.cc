@@ -9,6 +9,8 @@ namespace {
 
 /// Clear of the surface, yet thinner than anything of interest.
 constexpr float kOffsetMm = 1e-3f;
+/// Farther than any mesh here is wide.
+constexpr float kFarMm = 1e4f;
 
 RTCRay ray_from(const glm::vec3& origin, const glm::vec3& way, float near) {
   RTCRay ray{};
@@ -56,15 +58,23 @@ bool MeshRays::sees(const glm::vec3& from_mm, const glm::vec3& to_mm) const {
   return ray.tfar > 0;
 }
 
-std::optional<SurfacePoint> MeshRays::locate(const glm::vec3& point_mm, const glm::vec3& normal) const {
+std::optional<SurfacePoint> MeshRays::first_hit(const glm::vec3& from_mm, const glm::vec3& way_mm) const {
   RTCRayHit hit{};
-  hit.ray = ray_from(point_mm + kOffsetMm * normal, -2 * kOffsetMm * normal, 0);
+  hit.ray = ray_from(from_mm, way_mm, 0);
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcIntersect1(scene_->scene, &context, &hit);
   if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   return SurfacePoint{hit.hit.primID, {1 - hit.hit.u - hit.hit.v, hit.hit.u, hit.hit.v}};
+}
+
+std::optional<SurfacePoint> MeshRays::first_along(const glm::vec3& from_mm, const glm::vec3& direction) const {
+  return first_hit(from_mm, kFarMm * direction);
+}
+
+std::optional<SurfacePoint> MeshRays::locate(const glm::vec3& point_mm, const glm::vec3& normal) const {
+  return first_hit(point_mm + kOffsetMm * normal, -2 * kOffsetMm * normal);
 }
 
 }  // namespace diaphane::testing

@@ -1,0 +1,63 @@
+#include "tests/support/cells.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "diffusion/reference.h"
+#include "optics/presets.h"
+
+namespace diaphane::testing {
+
+Mesh cell_mesh(const std::string& name, float extent_mm) {
+  const auto shared = [](const char* file) {
+    auto mesh = read_mesh(shared_path(std::string("data/meshes/") + file));
+    if (!mesh) throw std::runtime_error(std::string(file) + " is not there");
+    return *mesh;
+  };
+  Mesh mesh;
+  if (name == "bunny") mesh = shared("bunny_closed_72k.ply");
+  if (name == "hand") mesh = shared("hand_7k7.ply");
+  if (name == "goathead") mesh = shared("demon_standin_goathead_48k.ply");
+  if (name == "fertility") mesh = shared("fertility_genus4.off");
+  if (name == "torus") mesh = make_torus(7, 3, 160, 64);
+  if (name == "cup") mesh = make_cup(7, 20, 2, 0.35f);
+  if (name == "plate") mesh = make_box({20, 20, 1}, 20);
+  if (name == "cube") mesh = make_box({20, 20, 20}, 20);
+  if (mesh.triangles.empty()) throw std::runtime_error("no mesh is called " + name);
+  scale_to(mesh, extent_mm);
+  return mesh;
+}
+
+std::vector<PointLight> cell_lights(const std::string& name, float extent_mm) {
+  const float unit = extent_mm / 20;
+  std::vector<PointLight> lights;
+  if (name == "front") lights = {{{25, 30, 40}, glm::vec3(12000)}};
+  if (name == "back") lights = {{{-15, 20, -40}, glm::vec3(12000)}};
+  if (name == "two") lights = {{{30, 20, 30}, {12000, 3000, 500}}, {{-30, 10, -20}, {300, 2000, 12000}}};
+  if (lights.empty()) throw std::runtime_error("no light is called " + name);
+  for (PointLight& light : lights) light.position_mm *= unit;
+  return lights;
+}
+
+Cell make_cell(const std::string& mesh, const std::string& material, const std::string& light, float extent_mm) {
+  const auto preset = optics::find_preset(material);
+  if (!preset) throw std::runtime_error("no material is called " + material);
+  Cell cell{mesh, material, light, cell_mesh(mesh, extent_mm), preset->coefficients, cell_lights(light, extent_mm), {}};
+  cell.irradiance = irradiance_of(cell.lights, cell.material.refractive_index);
+  return cell;
+}
+
+std::vector<glm::vec3> true_radiosity(const Mesh& mesh, const optics::Coefficients& material,
+                                      const diffusion::IrradianceAt& irradiance,
+                                      const std::vector<glm::vec3>& points_mm) {
+  const optics::Dipole dipole = optics::make_dipole(material);
+  const glm::vec3& l = dipole.mean_free_path_mm;
+  const diffusion::SurfelOptions sampling{.splits = mesh.triangles.size() > 100000 ? 1u : 2u,
+                                          .spacing_mm = 0.5f * std::min({l.x, l.y, l.z}),
+                                          .largest_splits = 200};
+  const diffusion::Surfels surfels =
+      diffusion::sample_surface(mesh.triangles, mesh.positions_mm, mesh.normals, irradiance, sampling);
+  return *diffusion::reference_radiosity(dipole, surfels, points_mm);
+}
+
+}  // namespace diaphane::testing

@@ -35,7 +35,9 @@ json to_json(const Errors& errors, const Samples& samples) {
           {"worst_point_mm", list(samples.at_mm[errors.worst_point])},
           {"worst_point_over_own", errors.worst_over_own},
           {"worst_own_point_mm", list(samples.at_mm[errors.worst_own_point])},
-          {"worst_own_point_over_mean", errors.own_over_mean}};
+          {"worst_own_point_over_mean", errors.own_over_mean},
+          {"brightness", list(errors.brightness)},
+          {"fitted_relative_rms", list(errors.fitted_rms)}};
 }
 
 json named(const testing::Cell& cell, json row) {

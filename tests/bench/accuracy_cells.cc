@@ -7,6 +7,7 @@
 
 #include "diffusion/kernel_table.h"
 #include "geometry/subdivide.h"
+#include "glm/common.hpp"
 #include "glm/geometric.hpp"
 #include "tests/bench/accuracy.h"
 #include "tests/support/error_parts.h"
@@ -158,7 +159,7 @@ Errors errors_of(const Samples& samples) {
   }
   errors.brightness = glm::vec3(values / truth);
   std::vector<glm::vec3> fitted = samples.values;
-  for (glm::vec3& b : fitted) b *= glm::vec3(products / squares);
+  for (glm::vec3& b : fitted) b *= glm::vec3(products / glm::max(squares, glm::dvec3(1e-300)));
   errors.fitted_rms = testing::relative_rms(fitted, samples.truth);
   errors.mean = glm::vec3(truth / static_cast<double>(samples.truth.size()));
   const glm::vec3& mean = errors.mean;

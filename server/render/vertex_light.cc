@@ -1,58 +1,70 @@
 #include "render/vertex_light.h"
 
-#include <algorithm>
+#include <utility>
 
 #include "glm/geometric.hpp"
+#include "render/lights.h"
+#include "tbb/parallel_for.h"
 
 namespace diaphane::render {
+namespace {
 
-double VertexLight::power(const geometry::PlacedShape& shape) const {
-  double sum = 0;
-  for (size_t t = 0; t < topology_->triangles.size(); ++t) {
-    const glm::uvec3& i = topology_->triangles[t];
-    const glm::vec3& a = shape.positions_mm[i.x];
-    const glm::vec3 doubled_area = glm::cross(shape.positions_mm[i.y] - a, shape.positions_mm[i.z] - a);
-    const glm::vec3& e = stage_.result().of_triangle[t];
-    sum += 0.5 * glm::length(doubled_area) * (e.r + e.g + e.b);
+/// A third of each triangle for each of its vertices.
+std::vector<float> vertex_areas(const geometry::MeshTopology& topology, const geometry::PlacedShape& shape) {
+  std::vector<float> areas_mm2(shape.positions_mm.size(), 0.0f);
+  for (const glm::uvec3& t : topology.triangles) {
+    const glm::vec3& a = shape.positions_mm[t.x];
+    const float third = glm::length(glm::cross(shape.positions_mm[t.y] - a, shape.positions_mm[t.z] - a)) / 6;
+    for (const uint32_t v : {t.x, t.y, t.z}) areas_mm2[v] += third;
   }
-  return sum;
+  return areas_mm2;
 }
 
-void VertexLight::update(const std::shared_ptr<const geometry::MeshTopology>& topology, const Inputs& inputs,
-                         StageClock& clock) {
-  if (topology_ == nullptr || topology_->mesh != topology) {
-    clock.run("order", [&] { topology_ = diffusion::build_surface_topology(topology); });
-    reads_.forget();
-  } else {
-    clock.sleep("order");
+double sum(const glm::vec3& rgb) { return static_cast<double>(rgb.r) + rgb.g + rgb.b; }
+
+}  // namespace
+
+float VertexLight::add(const LightStorage& light, const Inputs& inputs, std::span<const float> areas_mm2) {
+  struct Arrival {
+    glm::vec3 entering;
+    float seen;
+  };
+  std::vector<Arrival> arrivals(irradiance_.size());
+  tbb::parallel_for(size_t{0}, arrivals.size(), [&](size_t v) {
+    const glm::vec3& point_mm = inputs.shape.positions_mm[v];
+    const glm::vec3& normal = inputs.shape.normals[v];
+    const glm::vec3 entering = entering_irradiance(light, point_mm, normal, inputs.refractive_index);
+    // What looks away needs no ray.
+    const bool faces = entering != glm::vec3(0);
+    arrivals[v] = {entering, faces ? inputs.shadows.visibility_at(light, point_mm, normal) : 0.0f};
+  });
+  double unshadowed_w = 0;
+  double shadowed_w = 0;
+  for (size_t v = 0; v < arrivals.size(); ++v) {
+    const auto& [entering, seen] = arrivals[v];
+    irradiance_[v] += seen * entering;
+    const double power_w = areas_mm2[v] * sum(entering);
+    unshadowed_w += power_w;
+    shadowed_w += seen * power_w;
   }
+  // A light that shines on no outside, one within the body for example, has nothing to lose.
+  return unshadowed_w > 0 ? static_cast<float>(shadowed_w / unshadowed_w) : 1.0f;
+}
+
+void VertexLight::update(const Inputs& inputs, StageClock& clock) {
   std::vector<LightStorage> lights(inputs.lights.begin(), inputs.lights.end());
-  if (!reads_.renew({inputs.shape_generation, lights, inputs.refractive_index, inputs.shadows_generation})) {
+  if (!reads_.renew({inputs.generation, lights, inputs.refractive_index, inputs.shadows_generation})) {
     clock.sleep("irradiance");
     return;
   }
   clock.run("irradiance", [&] {
     lights_ = std::move(lights);
+    inputs.shadows.prepare_rays();
     irradiance_.assign(inputs.shape.positions_mm.size(), glm::vec3(0));
-    for (size_t i = 0; i < lights_.size(); ++i) {
-      const std::span<const LightStorage> light = inputs.lights.subspan(i, 1);
-      stage_.run(*topology_, inputs.shape, light, inputs.refractive_index, nullptr);
-      const double unshadowed = power(inputs.shape);
-      stage_.run(*topology_, inputs.shape, light, inputs.refractive_index, &inputs.shadows);
-      const double shadowed = power(inputs.shape);
-      // A light that shines on no outside, within the body for one, has nothing to lose.
-      lights_[i].shape.z = unshadowed > 0 ? static_cast<float>(std::min(shadowed / unshadowed, 1.0)) : 1.0f;
-      for (size_t v = 0; v < irradiance_.size(); ++v) irradiance_[v] += stage_.result().of_vertex[v];
-    }
+    const std::vector<float> areas_mm2 = vertex_areas(inputs.topology, inputs.shape);
+    for (LightStorage& light : lights_) light.shape.z = add(light, inputs, areas_mm2);
     ++generation_;
   });
-}
-
-size_t VertexLight::bytes() const {
-  if (topology_ == nullptr) return 0;
-  constexpr size_t kPerTriangle = sizeof(glm::uvec3) + 3 * sizeof(uint32_t) + 3 * sizeof(glm::vec3);
-  constexpr size_t kPerVertex = 4 * sizeof(uint32_t) + 2 * sizeof(glm::vec3);
-  return topology_->triangles.size() * kPerTriangle + irradiance_.size() * kPerVertex;
 }
 
 }  // namespace diaphane::render

@@ -17,8 +17,7 @@ void main() {
   vec3 n = normalize(world_normal);
   // The inside of an open surface is shaded as a surface of its own. Both signs are asked: a silhouette's normal may look
   // away from the eye on a front face, and a file may wind its triangles against its normals.
-  bool back_face = gl_FrontFacing == (flipped != 0.0);
-  bool inside = back_face && dot(n, eye_mm.xyz - world_mm) < 0.0;
+  bool inside = !gl_FrontFacing && dot(n, eye_mm.xyz - world_mm) < 0.0;
   if (inside) n = -n;
   position = vec4(world_mm, mesh_id);
   vec3 facet = cross(dFdx(world_mm), dFdy(world_mm));

@@ -78,9 +78,8 @@ std::optional<std::vector<Channel>> parse_channels(std::string_view text) {
   std::vector<Channel> channels;
   while (true) {
     const size_t comma = text.find(',');
-    const auto* found = std::find_if(std::begin(kChannels), std::end(kChannels), [&](const NamedChannel& entry) {
-      return entry.name == text.substr(0, comma);
-    });
+    const auto* found = std::find_if(std::begin(kChannels), std::end(kChannels),
+                                     [&](const NamedChannel& entry) { return entry.name == text.substr(0, comma); });
     if (found == std::end(kChannels)) return std::nullopt;
     if (std::find(channels.begin(), channels.end(), found->channel) != channels.end()) return std::nullopt;
     channels.push_back(found->channel);

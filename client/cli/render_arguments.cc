@@ -105,7 +105,8 @@ void add_technique_options(CLI::App& command, RenderArguments& arguments) {
              arguments.technique);
   add_parsed(command, "--quality", quality_names(), "Of the integral (default: normal)", parse_quality,
              arguments.quality);
-  add_parsed(command, "--shadows", shadows_names(), "Whether meshes hide lights (default: on for integral and reference, else off)", parse_shadows,
+  add_parsed(command, "--shadows", shadows_names(),
+             "Whether meshes hide lights (default: on for integral and reference, else off)", parse_shadows,
              arguments.shadows);
   add_parsed(command, "--terms", terms_names(), "Which part of the paper technique's answer", parse_terms,
              arguments.terms);

@@ -24,8 +24,8 @@ struct BruteForceBody {
 };
 
 /// B, linear RGB, W·mm⁻², at each of `positions_mm`: the sum over all surfels of the body, four a triangle. `progress`,
-/// if any, is told the share done, 0..1, growing, by one thread at a time. Spread over all cores. Errors: CANCELLED once
-/// `cancelled` is seen set.
+/// if any, is told the share done, 0..1, growing, by one thread at a time. Spread over all cores. Errors: CANCELLED
+/// once `cancelled` is seen set.
 absl::StatusOr<std::vector<glm::vec3>> brute_force_radiosity(const BruteForceBody& body,
                                                              std::span<const glm::vec3> positions_mm,
                                                              const std::atomic<bool>& cancelled,

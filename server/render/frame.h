@@ -47,7 +47,8 @@ inline bool casts_shadows(const RenderSettings& settings) {
                                    settings.technique == Technique::kReference);
 }
 
-/// What linear pixels tell beside R G B A, of the surface that a pixel's centre shows; 0 where it shows none, but for Z.
+/// What linear pixels tell beside R G B A, of the surface that a pixel's centre shows; 0 where it shows none, but for
+/// Z.
 enum class Channel {
   kIrradiance,  ///< irradiance.R .G .B: E, the light that enters, W·mm⁻²; Fresnel included, except by lambert
   kRadiosity,   ///< radiosity.R .G .B: B, the light that leaves, W·mm⁻²: radiance = Ft·B/π, by lambert B/π

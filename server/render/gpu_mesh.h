@@ -31,8 +31,6 @@ class GpuMesh {
   /// Draws all triangles, or those alone that face the eye.
   void draw(bool facing_only = false) const;
 
-  bool flipped() const { return flipped_; }
-
  private:
   std::weak_ptr<const geometry::MeshTopology> topology_;
   Memo<std::pair<const geometry::PlacedShape*, uint64_t>> shape_memo_;

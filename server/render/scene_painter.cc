@@ -24,7 +24,6 @@ absl::Status ScenePainter::check_cancelled(const Job& job) {
 void ScenePainter::bind_view(const Job& job, size_t mesh_index) const {
   ViewUniforms of_mesh = job.view;
   of_mesh.mesh_id = static_cast<float>(mesh_index + 1);
-  of_mesh.flipped = job.meshes[mesh_index].state->gpu.flipped() ? 1.0f : 0.0f;
   shading_.bind(of_mesh);
   shading_.bind(material_uniforms(job.meshes[mesh_index].material));
 }
@@ -99,9 +98,8 @@ void ScenePainter::read_tile(Job& job, const Tile& tile, uint8_t* pixels) {
   if (job.request.settings.technique == Technique::kIntegral) draw_gbuffer(job, tile);
   channels.position_mm.resize(count);
   channels.normal.resize(count);
-  job.clock.run("read_back", [&] {
-    targets_->read_gbuffer(width, height, channels.position_mm.data(), channels.normal.data());
-  });
+  job.clock.run("read_back",
+                [&] { targets_->read_gbuffer(width, height, channels.position_mm.data(), channels.normal.data()); });
 }
 
 absl::Status ScenePainter::draw_tile(Job& job, const Tile& tile, uint8_t* pixels) {

@@ -58,7 +58,8 @@ absl::Status ScenePainter::draw_reference_tile(Job& job, const Tile& tile, uint8
     std::function<void(double)> progress;
     if (job.request.progress) {
       progress = [&](double share) {
-        const double points_done = static_cast<double>(shown_before) + share * static_cast<double>(points.pixels.size());
+        const double points_done =
+            static_cast<double>(shown_before) + share * static_cast<double>(points.pixels.size());
         const double tile_done = static_cast<double>(count) * points_done / static_cast<double>(shown);
         job.request.progress((static_cast<double>(job.pixels_done) + tile_done) / all_pixels);
       };

@@ -16,8 +16,7 @@ struct ViewUniforms {
   glm::vec4 eye_mm{0};
   float radiance_scale = 1;
   float mesh_id = 0;
-  float flipped = 0;
-  float unused = 0;
+  float unused[2] = {};
 };
 static_assert(sizeof(ViewUniforms) == 96);
 

@@ -57,9 +57,9 @@ class FrameJob {
   /// What it ends with then.
   absl::Status expired() const {
     if (task_.deadline <= limit_) return absl::DeadlineExceededError("the frame's deadline passed");
-    return base::field_error(absl::StatusCode::kDeadlineExceeded,
-                             {std::string(task_.limit_field), "more",
-                              fmt::format("at most {}", absl::ToDoubleSeconds(task_.time_limit))});
+    return base::field_error(
+        absl::StatusCode::kDeadlineExceeded,
+        {std::string(task_.limit_field), "more", fmt::format("at most {}", absl::ToDoubleSeconds(task_.time_limit))});
   }
 
   /// Once set, stays set; the renderer stops when it sees it.

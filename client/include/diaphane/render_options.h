@@ -66,7 +66,7 @@ struct PaperSettings {
 
 struct RenderSettings {
   Technique technique = Technique::kServerDefault;
-  Quality quality = Quality::kNormal;   ///< of the integral
+  Quality quality = Quality::kNormal;  ///< of the integral
   Shadows shadows = Shadows::kDefault;
   PaperSettings paper;
   float exposure_ev = 0;  ///< stops, -32..32; multiplies radiance by 2^exposure_ev before sRGB, never in EXR
@@ -87,10 +87,10 @@ enum class ImageFormat {
 /// shows none, alpha and all of these are 0, but for depth, which is +infinity.
 enum class Channel {
   kIrradiance = 1,  ///< irradiance.R .G .B: the light that enters, W·mm⁻², Fresnel included (except by lambert)
-  kRadiosity = 2,   ///< radiosity.R .G .B: the light that leaves, W·mm⁻²: the colour is Ft/π times it, by lambert 1/π
-  kNormal = 3,      ///< N.X .Y .Z: unit, in the scene's axes
-  kDepth = 4,       ///< Z: along the view axis from the eye, scene units
-  kPosition = 5     ///< P.X .Y .Z: scene units
+  kRadiosity = 2,  ///< radiosity.R .G .B: the light that leaves, W·mm⁻²: the colour is Ft/π times it, by lambert 1/π
+  kNormal = 3,     ///< N.X .Y .Z: unit, in the scene's axes
+  kDepth = 4,      ///< Z: along the view axis from the eye, scene units
+  kPosition = 5  ///< P.X .Y .Z: scene units
 };
 
 struct NamedChannel {

@@ -127,8 +127,8 @@ class Scene {
   absl::StatusOr<RenderedFrame> render(const RenderOptions& options = {}) const;
 
   /// The same, and `progress` is told the share of the work done, 0..1, at most about ten times a second and at last 1,
-  /// on the calling thread. Only Technique::kReference knows what lies between. It grows, unless the connection was lost
-  /// and the frame begun anew.
+  /// on the calling thread. Only Technique::kReference knows what lies between. It grows, unless the connection was
+  /// lost and the frame begun anew.
   absl::StatusOr<RenderedFrame> render(const RenderOptions& options, const std::function<void(double)>& progress) const;
 
   /// Deletes the scene and all that is in it. Runs even once ClientOptions::stop was requested.

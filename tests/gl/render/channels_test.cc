@@ -135,6 +135,25 @@ TEST_F(Channels, DepthIsMeasuredAlongTheViewAxis) {
   }
 }
 
+TEST_F(Channels, NormalsOfAnOpenSurfaceLookAtTheEyeFromBothSides) {
+  for (const float mirror : {1.0f, -1.0f}) {
+    auto scene = make_scene(make_plane(200, 4), "marble");
+    auto mesh = std::make_shared<scene::Mesh>(*scene->meshes[0]);
+    mesh->scene_from_mesh[0][0] = mirror;
+    scene->meshes[0] = mesh;
+    FrameRequest request;
+    request.scene = scene;
+    request.width_px = request.height_px = 8;
+    request.settings.technique = Technique::kLambert;
+    for (const float side : {1.0f, -1.0f}) {
+      request.camera = {{0, 0, 60 * side}, {0, 0, 0}, {0, 1, 0}, 50};
+      for (const Pixel& pixel : pixels(request)) {
+        EXPECT_NEAR(pixel.normal.z, side, 1e-5f) << mirror;
+      }
+    }
+  }
+}
+
 TEST_F(Channels, IrradianceOfAPlaneIsWhatEntersOfTheLight) {
   const glm::vec3 light(4, 3, 25);
   auto scene = make_scene(make_plane(20, 32), "marble");

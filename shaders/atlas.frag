@@ -1,26 +1,25 @@
 #version 430 core
 #include "shared/box.glsl"
-#include "shared/fresnel.glsl"
-#include "shared/lights.glsl"
-#include "shared/material.glsl"
+#include "shared/irradiance.glsl"
 
 layout(location = 0) uniform int face;
 
 in vec3 world_mm;
 in vec3 world_normal;
+#ifdef LIT
+in vec3 entering;  // E with shadows, from the vertices
+#endif
 
 layout(location = 0) out vec4 irradiance;  // E; a: dot(N, P − box centre), the paper's self-occlusion key
 layout(location = 1) out vec4 surface;     // N along u and v; depth over the box centre in mm; coverage
 
 void main() {
   vec3 n = normalize(world_normal);
-  vec3 e = vec3(0.0);
-  for (int i = 0; i < lights.length(); ++i) {
-    vec3 towards;
-    vec3 arriving = arriving_light(lights[i], world_mm, towards);
-    float cosine = max(dot(n, towards), 0.0);
-    e += arriving * (cosine * fresnel_transmittance(mean_free_path_mm.a, cosine));
-  }
+#ifdef LIT
+  vec3 e = entering;
+#else
+  vec3 e = entering_irradiance(world_mm, n);
+#endif
   int axis = face_axis(face);
   vec3 from_centre = world_mm - box_centre_mm.xyz;
   // Only the size of N along the face is told by u and v: the stored normal looks at the face.

@@ -3,18 +3,28 @@
 
 in vec3 world_mm;
 in vec3 world_normal;
+#ifdef LIT
+in vec3 entering;  // E with shadows, from the vertices
+#endif
 
 layout(location = 0) out vec4 position;  // mm; a: mesh id
 layout(location = 1) out vec4 normal;    // unit; a: sine of the angle to the triangle's own normal
+#ifdef LIT
+layout(location = 2) out vec4 irradiance;
+#endif
 
 void main() {
   vec3 n = normalize(world_normal);
   // The inside of an open surface is shaded as a surface of its own. Both signs are asked: a silhouette's normal may look
   // away from the eye on a front face, and a file may wind its triangles against its normals.
-  bool back_face = gl_FrontFacing == (flipped != 0.0);
-  if (back_face && dot(n, eye_mm.xyz - world_mm) < 0.0) n = -n;
+  bool inside = !gl_FrontFacing && dot(n, eye_mm.xyz - world_mm) < 0.0;
+  if (inside) n = -n;
   position = vec4(world_mm, mesh_id);
   vec3 facet = cross(dFdx(world_mm), dFdy(world_mm));
   float sine = length(cross(n, facet)) / max(length(facet), 1e-20);
   normal = vec4(n, min(sine, 1.0));
+#ifdef LIT
+  // The vertices know what falls on the outside alone.
+  irradiance = vec4(inside ? vec3(0.0) : entering, 1.0);
+#endif
 }

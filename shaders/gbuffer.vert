@@ -6,9 +6,16 @@ layout(location = ATTRIBUTE_NORMAL) in vec3 normal;
 
 out vec3 world_mm;
 out vec3 world_normal;
+#ifdef LIT
+layout(location = ATTRIBUTE_IRRADIANCE) in vec3 irradiance_at_vertex;
+out vec3 entering;
+#endif
 
 void main() {
   world_mm = position_mm;
   world_normal = normal;
+#ifdef LIT
+  entering = irradiance_at_vertex;
+#endif
   gl_Position = clip_from_world * vec4(position_mm, 1.0);
 }

@@ -8,10 +8,19 @@ in vec3 to_eye;
 in vec3 world_normal;
 in vec3 leaving;
 
-layout(location = 0) out vec4 radiance;
+layout(location = TARGET_RADIANCE) out vec4 radiance;
+#ifdef CHANNELS
+in vec3 entering;
+layout(location = TARGET_IRRADIANCE) out vec4 irradiance_channel;
+layout(location = TARGET_RADIOSITY) out vec4 radiosity_channel;
+#endif
 
 void main() {
   float cosine = abs(dot(world_normal, to_eye)) * inversesqrt(dot(world_normal, world_normal) * dot(to_eye, to_eye));
   float transmittance = fresnel_transmittance(mean_free_path_mm.a, cosine);
   radiance = vec4(radiance_scale * transmittance / PI * leaving, 1.0);
+#ifdef CHANNELS
+  irradiance_channel = vec4(entering, 1.0);
+  radiosity_channel = vec4(leaving, 1.0);
+#endif
 }

@@ -8,10 +8,17 @@ layout(location = ATTRIBUTE_RADIOSITY) in vec3 radiosity;
 out vec3 to_eye;
 out vec3 world_normal;
 out vec3 leaving;
+#ifdef CHANNELS
+layout(location = ATTRIBUTE_IRRADIANCE) in vec3 irradiance_at_vertex;
+out vec3 entering;
+#endif
 
 void main() {
   to_eye = eye_mm.xyz - position_mm;
   world_normal = normal;
   leaving = radiosity;
+#ifdef CHANNELS
+  entering = irradiance_at_vertex;
+#endif
   gl_Position = clip_from_world * vec4(position_mm, 1.0);
 }

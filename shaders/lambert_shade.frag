@@ -7,12 +7,23 @@
 layout(binding = UNIT_GBUFFER_POSITION) uniform sampler2D gbuffer_position;
 layout(binding = UNIT_GBUFFER_NORMAL) uniform sampler2D gbuffer_normal;
 
-layout(location = 0) out vec4 radiance;
+#ifdef LIT
+layout(binding = UNIT_GBUFFER_IRRADIANCE) uniform sampler2D gbuffer_irradiance;
+#endif
+
+layout(location = TARGET_RADIANCE) out vec4 radiance;
+#ifdef CHANNELS
+layout(location = TARGET_IRRADIANCE) out vec4 irradiance_channel;
+layout(location = TARGET_RADIOSITY) out vec4 radiosity_channel;
+#endif
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   vec4 position = texelFetch(gbuffer_position, pixel, 0);
   if (position.w != mesh_id) discard;
+#ifdef LIT
+  vec3 e = texelFetch(gbuffer_irradiance, pixel, 0).rgb;
+#else
   vec3 n = texelFetch(gbuffer_normal, pixel, 0).xyz;
   vec3 e = vec3(0.0);
   for (int i = 0; i < lights.length(); ++i) {
@@ -20,5 +31,10 @@ void main() {
     vec3 arriving = arriving_light(lights[i], position.xyz, towards);
     e += arriving * max(dot(n, towards), 0.0);
   }
+#endif
   radiance = vec4(radiance_scale / PI * total_reflectance.rgb * e, 1.0);
+#ifdef CHANNELS
+  irradiance_channel = vec4(e, 1.0);
+  radiosity_channel = vec4(total_reflectance.rgb * e, 1.0);
+#endif
 }

@@ -1,8 +1,6 @@
 #version 430 core
 #include "shared/atlas_lookup.glsl"
-#include "shared/fresnel.glsl"
-#include "shared/lights.glsl"
-#include "shared/material.glsl"
+#include "shared/irradiance.glsl"
 #include "shared/view.glsl"
 
 // Pass 2: local scattering from the selected face, and the global term (paper §4.3, §4.4).
@@ -15,7 +13,15 @@ layout(std140, binding = UNIFORMS_PAPER) uniform Paper {
 layout(binding = UNIT_GBUFFER_POSITION) uniform sampler2D gbuffer_position;
 layout(binding = UNIT_GBUFFER_NORMAL) uniform sampler2D gbuffer_normal;
 
-layout(location = 0) out vec4 radiance;
+#ifdef LIT
+layout(binding = UNIT_GBUFFER_IRRADIANCE) uniform sampler2D gbuffer_irradiance;
+#endif
+
+layout(location = TARGET_RADIANCE) out vec4 radiance;
+#ifdef CHANNELS
+layout(location = TARGET_IRRADIANCE) out vec4 irradiance_channel;
+layout(location = TARGET_RADIOSITY) out vec4 radiosity_channel;
+#endif
 
 // Σ E·Rd·dA over N×N bilinear taps that span the half-width k = (N·f)·l around the point on its face.
 vec3 gather(int face, float scalar_product, vec3 from_centre_mm) {
@@ -75,6 +81,9 @@ vec3 global_radiosity(vec3 position_mm, vec3 n) {
     vec3 arriving = arriving_light(lights[i], position_mm, towards);
     float cosine = abs(dot(n, towards));
     vec3 e = arriving * (cosine * fresnel_transmittance(mean_free_path_mm.a, cosine));
+#ifdef LIT
+    e *= lights[i].shape.z;  // what the body still gets of this light
+#endif
     vec3 s = max(vec3(travelled_mm(lights[i], position_mm, towards)), l);
     vec3 optical = effective_transport_mm.rgb * s;
     vec3 ratio = l / s;
@@ -95,4 +104,13 @@ void main() {
   float exit_cosine = abs(dot(n, normalize(eye_mm.xyz - position.xyz)));
   float transmittance = fresnel_transmittance(mean_free_path_mm.a, exit_cosine);
   radiance = vec4(radiance_scale * transmittance / PI * radiosity, 1.0);
+#ifdef CHANNELS
+#ifdef LIT
+  vec3 e = texelFetch(gbuffer_irradiance, pixel, 0).rgb;
+#else
+  vec3 e = entering_irradiance(position.xyz, n);
+#endif
+  irradiance_channel = vec4(e, 1.0);
+  radiosity_channel = vec4(radiosity, 1.0);
+#endif
 }

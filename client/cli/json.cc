@@ -64,6 +64,7 @@ Json to_json(const ServerInfo& info) {
           {"limits",
            {{"max_pixels", info.max_pixels},
             {"max_reference_pixels", info.max_reference_pixels},
+            {"max_reference_seconds", info.max_reference_seconds},
             {"max_vertices_per_mesh", info.max_vertices_per_mesh},
             {"max_triangles_per_mesh", info.max_triangles_per_mesh},
             {"max_scenes", info.max_scenes},

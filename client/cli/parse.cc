@@ -21,10 +21,10 @@ bool parse_whole(std::string_view text, Number* number) {
 }
 
 template <typename Named>
-std::string joined(std::span<const Named> table) {
+std::string joined(std::span<const Named> table, std::string_view separator = " | ") {
   std::vector<std::string_view> names;
   for (const Named& entry : table) names.push_back(entry.name);
-  return fmt::format("{}", fmt::join(names, " | "));
+  return fmt::format("{}", fmt::join(names, separator));
 }
 
 }  // namespace
@@ -74,6 +74,20 @@ std::optional<Light> parse_spot_light(std::string_view text) {
   return SpotLight{{{n[0], n[1], n[2]}, {n[8], n[9], n[10]}}, {n[3], n[4], n[5]}, n[6], n[7]};
 }
 
+std::optional<std::vector<Channel>> parse_channels(std::string_view text) {
+  std::vector<Channel> channels;
+  while (true) {
+    const size_t comma = text.find(',');
+    const auto* found = std::find_if(std::begin(kChannels), std::end(kChannels),
+                                     [&](const NamedChannel& entry) { return entry.name == text.substr(0, comma); });
+    if (found == std::end(kChannels)) return std::nullopt;
+    if (std::find(channels.begin(), channels.end(), found->channel) != channels.end()) return std::nullopt;
+    channels.push_back(found->channel);
+    if (comma == std::string_view::npos) return channels;
+    text.remove_prefix(comma + 1);
+  }
+}
+
 std::optional<Size> parse_size(std::string_view text) {
   const size_t x = text.find('x');
   Size size;
@@ -99,6 +113,8 @@ std::string technique_names() { return joined(std::span<const NamedTechnique>(kT
 std::string quality_names() { return joined(std::span<const NamedQuality>(kQualities)); }
 
 std::string shadows_names() { return joined(std::span<const NamedShadows>(kShadows)); }
+
+std::string channel_names() { return joined(std::span<const NamedChannel>(kChannels), ","); }
 
 std::string terms_names() { return joined(std::span<const NamedTerms>(kTerms)); }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "diaphane/render_options.h"
 #include "diaphane/values.h"
@@ -23,15 +24,18 @@ std::optional<Light> parse_point_light(std::string_view text);
 std::optional<Light> parse_directional_light(std::string_view text);
 /// X,Y,Z,DX,DY,DZ,INNER,OUTER,R,G,B: place, axis, angles from the axis in degrees, W/sr.
 std::optional<Light> parse_spot_light(std::string_view text);
+/// Names between commas, each once.
+std::optional<std::vector<Channel>> parse_channels(std::string_view text);
 std::optional<Size> parse_size(std::string_view text);  ///< WxH, both above 0
 
 /// By the file's extension, in any case.
 std::optional<ImageFormat> format_of(const std::filesystem::path& path);
 
-/// The names, with " | " between them.
+/// The names, with " | " between them; of channels, with commas.
 std::string technique_names();
 std::string quality_names();
 std::string shadows_names();
 std::string terms_names();
+std::string channel_names();
 
 }  // namespace diaphane::cli

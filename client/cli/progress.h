@@ -14,9 +14,13 @@ class Progress {
   ~Progress() { clear(); }
 
   void step(std::string_view what);
+  /// A step with a bar, `share` of which is done, 0..1.
+  void bar(std::string_view what, double share);
   void clear();
 
  private:
+  void show(std::string_view line);
+
   bool terminal_;
   bool shown_ = false;
 };

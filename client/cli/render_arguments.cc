@@ -105,7 +105,8 @@ void add_technique_options(CLI::App& command, RenderArguments& arguments) {
              arguments.technique);
   add_parsed(command, "--quality", quality_names(), "Of the integral (default: normal)", parse_quality,
              arguments.quality);
-  add_parsed(command, "--shadows", shadows_names(), "Default: on for the integral and the reference", parse_shadows,
+  add_parsed(command, "--shadows", shadows_names(),
+             "Whether meshes hide lights (default: on for integral and reference, else off)", parse_shadows,
              arguments.shadows);
   add_parsed(command, "--terms", terms_names(), "Which part of the paper technique's answer", parse_terms,
              arguments.terms);
@@ -152,6 +153,8 @@ void add_render_options(CLI::App& command, RenderArguments& arguments) {
           "The image: .png, .jpg or .exr (linear radiance)")
       ->type_name("FILE")
       ->required();
+  add_parsed(command, "--aov", channel_names(), "Extra channels of an EXR, as 32-bit floats", parse_channels,
+             arguments.channels);
   add_parsed(command, "--size", "WxH", "Pixels (default: 1280x720)", parse_size, arguments.size);
   add_technique_options(command, arguments);
   add_material_options(command, arguments);

@@ -17,6 +17,7 @@ struct RenderArguments {
   std::string output;
   ImageFormat format = ImageFormat::kPng;  ///< by the output's extension
   std::optional<Size> size;
+  std::optional<std::vector<Channel>> channels;
 
   std::optional<Technique> technique;
   std::optional<Quality> quality;

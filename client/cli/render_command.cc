@@ -53,8 +53,10 @@ absl::Status fill_scene(const Scene& scene, const RenderPlan& plan, Progress& pr
 
 absl::StatusOr<RenderedFrame> render_scene(const Scene& scene, const RenderPlan& plan, Progress& progress) {
   if (absl::Status status = fill_scene(scene, plan, progress); !status.ok()) return status;
-  progress.step(fmt::format("rendering {}x{}", plan.options.size.width_px, plan.options.size.height_px));
-  return scene.render(plan.options);
+  const std::string what = fmt::format("rendering {}x{}", plan.options.size.width_px, plan.options.size.height_px);
+  progress.step(what);
+  if (plan.options.settings.technique != Technique::kReference) return scene.render(plan.options);
+  return scene.render(plan.options, [&](double share) { progress.bar(what, share); });
 }
 
 absl::StatusOr<RenderedFrame> make_frame(const Client& client, RenderPlan* plan, Progress& progress) {
@@ -97,6 +99,9 @@ void report(const GlobalOptions& global, const RenderArguments& arguments, const
 absl::Status run_render(const GlobalOptions& global, const RenderArguments& arguments) {
   if (arguments.meshes.empty() && arguments.scene_file.empty()) {
     return usage_error("MESH", "give at least one mesh file, or --scene");
+  }
+  if (arguments.channels && arguments.format != ImageFormat::kExr) {
+    return usage_error("--aov", fmt::format("only an .exr has extra channels, got '{}'", arguments.output));
   }
   if (absl::Status status = check_writable(arguments.output); !status.ok()) return status;
   Progress progress;

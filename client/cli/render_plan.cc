@@ -85,6 +85,7 @@ absl::Status take_scene_file(SceneFile scene, RenderPlan* plan, FileUnits* units
 void take_settings(const RenderArguments& arguments, RenderOptions* options) {
   options->format = arguments.format;
   RenderSettings& settings = options->settings;
+  if (arguments.channels) options->channels = *arguments.channels;
   if (arguments.size) options->size = *arguments.size;
   if (arguments.technique) settings.technique = *arguments.technique;
   if (arguments.quality) settings.quality = *arguments.quality;

@@ -80,6 +80,8 @@ absl::Status run_info(const GlobalOptions& global) {
   fmt::print("               {} meshes, {} materials and {} lights a scene, {} frames queued\n",
              info->max_meshes_per_scene, info->max_materials_per_scene, info->max_lights_per_scene,
              info->max_queued_frames);
+  fmt::print("               {} pixels and {} s a frame by the reference\n", info->max_reference_pixels,
+             info->max_reference_seconds);
   return absl::OkStatus();
 }
 

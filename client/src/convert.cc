@@ -22,6 +22,11 @@ static_assert(int{v1::TERMS_GLOBAL} == static_cast<int>(Terms::kGlobal));
 static_assert(int{v1::IMAGE_FORMAT_PNG} == static_cast<int>(ImageFormat::kPng));
 static_assert(int{v1::IMAGE_FORMAT_JPEG} == static_cast<int>(ImageFormat::kJpeg));
 static_assert(int{v1::IMAGE_FORMAT_EXR} == static_cast<int>(ImageFormat::kExr));
+static_assert(int{v1::CHANNEL_IRRADIANCE} == static_cast<int>(Channel::kIrradiance));
+static_assert(int{v1::CHANNEL_RADIOSITY} == static_cast<int>(Channel::kRadiosity));
+static_assert(int{v1::CHANNEL_NORMAL} == static_cast<int>(Channel::kNormal));
+static_assert(int{v1::CHANNEL_DEPTH} == static_cast<int>(Channel::kDepth));
+static_assert(int{v1::CHANNEL_POSITION} == static_cast<int>(Channel::kPosition));
 
 v1::Vec3 vec3(float x, float y, float z) {
   v1::Vec3 message;
@@ -122,6 +127,9 @@ v1::RenderFrameRequest to_proto(const RenderOptions& options) {
   *message.mutable_settings() = to_proto(options.settings);
   message.mutable_encoding()->set_format(static_cast<v1::ImageFormat>(options.format));
   message.mutable_encoding()->set_jpeg_quality(options.jpeg_quality);
+  for (const Channel channel : options.channels) {
+    message.mutable_encoding()->add_channels(static_cast<v1::Channel>(channel));
+  }
   return message;
 }
 
@@ -215,6 +223,7 @@ ServerInfo from_proto(const v1::ServerInfo& message) {
           .context_reason = message.context_reason(),
           .max_pixels = limits.max_pixels(),
           .max_reference_pixels = limits.max_reference_pixels(),
+          .max_reference_seconds = limits.max_reference_seconds(),
           .max_vertices_per_mesh = limits.max_vertices_per_mesh(),
           .max_triangles_per_mesh = limits.max_triangles_per_mesh(),
           .max_scenes = limits.max_scenes(),

@@ -1,5 +1,6 @@
 #include "diaphane/scene.h"
 
+#include <optional>
 #include <utility>
 
 #include "connection.h"
@@ -149,6 +150,28 @@ absl::StatusOr<RenderedFrame> Scene::render(const RenderOptions& options) const 
   auto response = connection_->call(connection_->render_service(), &RenderStub::RenderFrame, request);
   if (!response.ok()) return response.status();
   return from_proto(*std::move(response));
+}
+
+absl::StatusOr<RenderedFrame> Scene::render(const RenderOptions& options,
+                                            const std::function<void(double)>& progress) const {
+  v1::RenderFrameRequest request = to_proto(options);
+  request.set_scene(name_);
+  std::optional<RenderedFrame> frame;
+  const absl::Status status = connection_->run([&](grpc::ClientContext& context) {
+    const auto reader = connection_->render_service()->RenderFrameWithProgress(&context, request);
+    v1::RenderFrameWithProgressResponse part;
+    while (reader->Read(&part)) {
+      if (part.has_frame()) {
+        frame = from_proto(std::move(*part.mutable_frame()));
+      } else if (progress) {
+        progress(part.progress());
+      }
+    }
+    return reader->Finish();
+  });
+  if (!status.ok()) return status;
+  if (!frame) return absl::InternalError("the server ended its answer without a frame");
+  return *std::move(frame);
 }
 
 absl::Status Scene::remove() const {

@@ -8,7 +8,8 @@
 namespace diaphane::app {
 namespace {
 
-void add_limits(CLI::App& app, service::ServiceLimits& limits, uint64_t& mesh_mib, double& upload_silence_s) {
+void add_limits(CLI::App& app, service::ServiceLimits& limits, uint64_t& mesh_mib, double& upload_silence_s,
+                double& reference_s) {
   const CLI::Range positive(1u, UINT32_MAX);
   const auto add = [&](const char* name, auto& value, const char* description) {
     app.add_option(name, value, description)->check(positive)->capture_default_str()->group("Limits");
@@ -22,6 +23,10 @@ void add_limits(CLI::App& app, service::ServiceLimits& limits, uint64_t& mesh_mi
   add("--max-vertices", limits.scene.max_vertices_per_mesh, "vertices of a mesh");
   add("--max-triangles", limits.scene.max_triangles_per_mesh, "triangles of a mesh");
   add("--max-mesh-mib", mesh_mib, "MiB of all meshes and of uploads in flight");
+  app.add_option("--max-reference-seconds", reference_s, "how long a frame by the reference technique is drawn for")
+      ->check(CLI::Range(0.001, 86400.0))
+      ->capture_default_str()
+      ->group("Limits");
   app.add_option("--max-upload-silence-seconds", upload_silence_s, "how long an upload may send nothing")
       ->check(CLI::Range(0.001, 86400.0))
       ->capture_default_str()
@@ -36,6 +41,7 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
   uint64_t mesh_mib = options.server.limits.scene.max_mesh_bytes >> 20;
   uint64_t grpc_mib = options.server.grpc_memory_bytes >> 20;
   double upload_silence_s = absl::ToDoubleSeconds(options.server.limits.max_upload_silence);
+  double reference_s = absl::ToDoubleSeconds(options.server.limits.max_reference_time);
   double drain_s = absl::ToDoubleSeconds(options.drain);
 
   CLI::App app("Renders translucent objects for clients that connect by gRPC.", "diaphane-server");
@@ -62,7 +68,7 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
       ->check(CLI::Range(16u, 1u << 20))
       ->capture_default_str()
       ->group("Limits");
-  add_limits(app, options.server.limits, mesh_mib, upload_silence_s);
+  add_limits(app, options.server.limits, mesh_mib, upload_silence_s, reference_s);
 
   try {
     app.parse(argc, argv);
@@ -72,6 +78,7 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
   options.renderer.warm_all = warm == "all";
   options.server.limits.scene.max_mesh_bytes = mesh_mib << 20;
   options.server.limits.max_upload_silence = absl::Seconds(upload_silence_s);
+  options.server.limits.max_reference_time = absl::Seconds(reference_s);
   options.server.grpc_memory_bytes = grpc_mib << 20;
   options.drain = absl::Seconds(drain_s);
   return options;

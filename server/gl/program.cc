@@ -93,11 +93,12 @@ Program::~Program() {
 }
 
 absl::StatusOr<Program> load_program(const ShaderLibrary& library, std::string_view vertex_path,
-                                     std::string_view fragment_path) {
-  const absl::StatusOr<std::string> vertex = library.source(vertex_path);
+                                     std::string_view fragment_path, std::string_view defines) {
+  absl::StatusOr<std::string> vertex = library.source(vertex_path);
   if (!vertex.ok()) return vertex.status();
-  const absl::StatusOr<std::string> fragment = library.source(fragment_path);
+  absl::StatusOr<std::string> fragment = library.source(fragment_path);
   if (!fragment.ok()) return fragment.status();
+  for (std::string* text : {&*vertex, &*fragment}) text->insert(text->find('\n') + 1, defines);
   return Program::link(fmt::format("{} + {}", vertex_path, fragment_path), *vertex, *fragment);
 }
 

@@ -49,8 +49,8 @@ class Program {
   GLuint id_ = 0;
 };
 
-/// Reads both files from `library` and links them.
+/// Reads both files from `library` and links them. `defines` are whole lines, put behind each file's #version.
 absl::StatusOr<Program> load_program(const ShaderLibrary& library, std::string_view vertex_path,
-                                     std::string_view fragment_path);
+                                     std::string_view fragment_path, std::string_view defines = "");
 
 }  // namespace diaphane::gl

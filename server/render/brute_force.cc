@@ -3,42 +3,58 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "diffusion/reference.h"
 #include "glm/geometric.hpp"
 #include "render/lights.h"
+#include "tbb/parallel_for.h"
 
 namespace diaphane::render {
 
-absl::StatusOr<std::vector<glm::vec3>> brute_force_radiance(const BruteForceBody& body,
-                                                            std::span<const glm::vec3> positions_mm,
-                                                            std::span<const glm::vec3> normals, const glm::vec3& eye_mm,
-                                                            const std::atomic<bool>& cancelled) {
-  const float refractive_index = body.material.refractive_index;
-  const diffusion::IrradianceAt irradiance = [&](const glm::vec3& position, const glm::vec3& normal) {
+namespace {
+
+diffusion::IrradianceAt irradiance_on(const BruteForceBody& body) {
+  return [&body](const glm::vec3& position, const glm::vec3& normal) {
     glm::vec3 e(0);
     for (const LightStorage& light : body.lights) {
-      const glm::vec3 entering = entering_irradiance(light, position, normal, refractive_index);
+      const glm::vec3 entering = entering_irradiance(light, position, normal, body.material.refractive_index);
       if (entering == glm::vec3(0)) continue;
       e += (body.shadows == nullptr ? 1.0f : body.shadows->visibility_at(light, position, normal)) * entering;
     }
     return e;
   };
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<glm::vec3>> brute_force_radiosity(const BruteForceBody& body,
+                                                             std::span<const glm::vec3> positions_mm,
+                                                             const std::atomic<bool>& cancelled,
+                                                             std::function<void(double)> progress) {
   const optics::Dipole dipole = optics::make_dipole(body.material);
   const glm::vec3& l = dipole.mean_free_path_mm;
   const diffusion::SurfelOptions sampling{.splits = 1, .spacing_mm = 0.5f * std::min({l.x, l.y, l.z})};
   const diffusion::Surfels surfels = diffusion::sample_surface(body.topology.triangles, body.shape.positions_mm,
-                                                               body.shape.normals, irradiance, sampling);
+                                                               body.shape.normals, irradiance_on(body), sampling);
   diffusion::ReferenceOptions options;
   options.cancelled = &cancelled;
-  absl::StatusOr<std::vector<glm::vec3>> radiosity =
-      diffusion::reference_radiosity(dipole, surfels, positions_mm, options);
-  if (!radiosity.ok()) return radiosity;
-  for (size_t i = 0; i < radiosity->size(); ++i) {
-    const float cosine = std::abs(glm::dot(normals[i], glm::normalize(eye_mm - positions_mm[i])));
-    (*radiosity)[i] *= optics::fresnel_transmittance(refractive_index, cosine) / std::numbers::pi_v<float>;
-  }
-  return radiosity;
+  options.progress = std::move(progress);
+  return diffusion::reference_radiosity(dipole, surfels, positions_mm, options);
+}
+
+std::vector<glm::vec3> brute_force_irradiance(const BruteForceBody& body, std::span<const glm::vec3> positions_mm,
+                                              std::span<const glm::vec3> normals) {
+  const diffusion::IrradianceAt irradiance = irradiance_on(body);
+  std::vector<glm::vec3> e(positions_mm.size());
+  tbb::parallel_for(size_t{0}, e.size(), [&](size_t i) { e[i] = irradiance(positions_mm[i], normals[i]); });
+  return e;
+}
+
+glm::vec3 leaving_radiance(const glm::vec3& radiosity, float refractive_index, const glm::vec3& position_mm,
+                           const glm::vec3& normal, const glm::vec3& eye_mm) {
+  const float cosine = std::abs(glm::dot(normal, glm::normalize(eye_mm - position_mm)));
+  return radiosity * (optics::fresnel_transmittance(refractive_index, cosine) / std::numbers::pi_v<float>);
 }
 
 }  // namespace diaphane::render

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -22,11 +23,20 @@ struct BruteForceBody {
   const ShadowScene* shadows;  ///< null: unshadowed
 };
 
-/// L = Ft·B/π (paper Eq. 2), linear RGB, at each of `positions_mm` with `normals`, seen from `eye_mm`; B sums all
-/// surfels of the body, four a triangle. Spread over all cores. Errors: CANCELLED once `cancelled` is seen set.
-absl::StatusOr<std::vector<glm::vec3>> brute_force_radiance(const BruteForceBody& body,
-                                                            std::span<const glm::vec3> positions_mm,
-                                                            std::span<const glm::vec3> normals, const glm::vec3& eye_mm,
-                                                            const std::atomic<bool>& cancelled);
+/// B, linear RGB, W·mm⁻², at each of `positions_mm`: the sum over all surfels of the body, four a triangle. `progress`,
+/// if any, is told the share done, 0..1, growing, by one thread at a time. Spread over all cores. Errors: CANCELLED
+/// once `cancelled` is seen set.
+absl::StatusOr<std::vector<glm::vec3>> brute_force_radiosity(const BruteForceBody& body,
+                                                             std::span<const glm::vec3> positions_mm,
+                                                             const std::atomic<bool>& cancelled,
+                                                             std::function<void(double)> progress = {});
+
+/// E, linear RGB, W·mm⁻², at each of `positions_mm` with `normals`. Spread over all cores.
+std::vector<glm::vec3> brute_force_irradiance(const BruteForceBody& body, std::span<const glm::vec3> positions_mm,
+                                              std::span<const glm::vec3> normals);
+
+/// L = Ft·B/π (paper Eq. 2), seen from `eye_mm`.
+glm::vec3 leaving_radiance(const glm::vec3& radiosity, float refractive_index, const glm::vec3& position_mm,
+                           const glm::vec3& normal, const glm::vec3& eye_mm);
 
 }  // namespace diaphane::render

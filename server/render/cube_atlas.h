@@ -20,6 +20,7 @@ struct AtlasKey {
   std::vector<LightStorage> lights;
   float refractive_index = 1;
   uint32_t face_size_px = 0;
+  uint64_t irradiance_generation = 0;  ///< of E with shadows at the vertices; 0: E is the shader's
   bool operator==(const AtlasKey&) const = default;
 };
 

@@ -3,7 +3,9 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -34,14 +36,30 @@ struct PaperSettings {
 struct RenderSettings {
   Technique technique = Technique::kIntegral;
   diffusion::Quality quality = diffusion::Quality::kNormal;  ///< of the integral
-  bool shadows = true;                                       ///< of the integral and the reference
+  std::optional<bool> shadows;  ///< not given: on for the integral and the reference, off for the others
   PaperSettings paper;
   float exposure_ev = 0;  ///< stops; not applied to linear pixels
 };
 
+/// Whether the meshes of a frame hide lights.
+inline bool casts_shadows(const RenderSettings& settings) {
+  return settings.shadows.value_or(settings.technique == Technique::kIntegral ||
+                                   settings.technique == Technique::kReference);
+}
+
+/// What linear pixels tell beside R G B A, of the surface that a pixel's centre shows; 0 where it shows none, but for
+/// Z.
+enum class Channel {
+  kIrradiance,  ///< irradiance.R .G .B: E, the light that enters, W·mm⁻²; Fresnel included, except by lambert
+  kRadiosity,   ///< radiosity.R .G .B: B, the light that leaves, W·mm⁻²: radiance = Ft·B/π, by lambert B/π
+  kNormal,      ///< N.X .Y .Z: unit, scene axes, turned to the eye on the inside of an open surface
+  kDepth,       ///< Z: along the view axis from the eye, scene units; +infinity where there is no surface
+  kPosition     ///< P.X .Y .Z: scene units and axes
+};
+
 enum class PixelFormat {
   kSrgb8,       ///< base::Image8, after exposure
-  kLinearFloat  ///< base::ImageF, outgoing radiance in W·mm⁻²·sr⁻¹, channels R G B A
+  kLinearFloat  ///< base::ImageF, outgoing radiance in W·mm⁻²·sr⁻¹: R G B A, then the channels asked for
 };
 
 /// Plain values; the snapshot keeps everything it needs alive.
@@ -52,6 +70,10 @@ struct FrameRequest {
   uint32_t height_px = 720;
   RenderSettings settings;
   PixelFormat format = PixelFormat::kSrgb8;
+  std::vector<Channel> channels;  ///< of linear pixels; each at most once
+  /// Told the share of the work done, 0..1, growing, by one thread at a time, while the reference is at work. May be
+  /// empty; must be quick.
+  std::function<void(double)> progress;
 };
 
 struct StageTime {

@@ -68,6 +68,25 @@ FrameRequest warm_up_request() {
   return request;
 }
 
+/// Draws with every program and variant of one.
+absl::Status warm_up(FrameRenderer& renderer) {
+  FrameRequest request = warm_up_request();
+  for (const Technique technique : {Technique::kIntegral, Technique::kPaper, Technique::kLambert}) {
+    request.settings.technique = technique;
+    for (const bool shadows : {false, true}) {
+      request.settings.shadows = shadows;
+      request.channels.clear();
+      for (const PixelFormat format : {PixelFormat::kSrgb8, PixelFormat::kLinearFloat, PixelFormat::kLinearFloat}) {
+        request.format = format;
+        const auto frame = renderer.render(request, std::atomic<bool>(false));
+        if (!frame.ok()) return frame.status();
+        if (format == PixelFormat::kLinearFloat) request.channels = {Channel::kIrradiance};
+      }
+    }
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<FrameRenderer>> make_gl_renderer(const GlRendererOptions& options) {
@@ -80,14 +99,7 @@ absl::StatusOr<std::unique_ptr<FrameRenderer>> make_gl_renderer(const GlRenderer
   if (!shading.ok()) return shading.status();
   auto renderer = std::make_unique<GlRenderer>(*std::move(context), *std::move(shading));
   if (options.warm_all) {
-    FrameRequest request = warm_up_request();
-    for (const Technique technique : {Technique::kIntegral, Technique::kPaper, Technique::kLambert}) {
-      request.settings.technique = technique;
-      for (const PixelFormat format : {PixelFormat::kSrgb8, PixelFormat::kLinearFloat}) {
-        request.format = format;
-        if (auto frame = renderer->render(request, std::atomic<bool>(false)); !frame.ok()) return frame.status();
-      }
-    }
+    if (absl::Status warm = warm_up(*renderer); !warm.ok()) return warm;
   }
   return std::unique_ptr<FrameRenderer>(std::move(renderer));
 }

@@ -27,6 +27,8 @@ void GpuMesh::update(const std::shared_ptr<const geometry::MeshTopology>& topolo
     if (new_topology) {
       glDisableVertexAttribArray(ATTRIBUTE_RADIOSITY);
       radiosity_memo_.forget();
+      glDisableVertexAttribArray(ATTRIBUTE_IRRADIANCE);
+      irradiance_memo_.forget();
       index_count_ = static_cast<GLsizei>(3 * topology->triangles.size());
       gl::upload(indices_, GL_ELEMENT_ARRAY_BUFFER, topology->triangles.data(),
                  topology->triangles.size() * sizeof(glm::uvec3), GL_STATIC_DRAW);
@@ -44,6 +46,18 @@ void GpuMesh::update_radiosity(std::span<const glm::vec3> radiosity, uint64_t ge
   clock.run("upload", [&] {
     glBindVertexArray(vertex_array_.id());
     fill_attribute(radiosity_, ATTRIBUTE_RADIOSITY, radiosity);
+  });
+}
+
+void GpuMesh::update_irradiance(std::span<const glm::vec3> irradiance, const void* source, uint64_t generation,
+                                StageClock& clock) {
+  if (!irradiance_memo_.renew({source, generation})) {
+    clock.sleep("upload");
+    return;
+  }
+  clock.run("upload", [&] {
+    glBindVertexArray(vertex_array_.id());
+    fill_attribute(irradiance_, ATTRIBUTE_IRRADIANCE, irradiance);
   });
 }
 

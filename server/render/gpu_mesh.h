@@ -24,19 +24,23 @@ class GpuMesh {
   /// Radiosity at ATTRIBUTE_RADIOSITY, one value a vertex of the last update(). Stage: upload.
   void update_radiosity(std::span<const glm::vec3> radiosity, uint64_t generation, StageClock& clock);
 
+  /// Irradiance at ATTRIBUTE_IRRADIANCE, likewise. `source` names who counts the generations. Stage: upload.
+  void update_irradiance(std::span<const glm::vec3> irradiance, const void* source, uint64_t generation,
+                         StageClock& clock);
+
   /// Draws all triangles, or those alone that face the eye.
   void draw(bool facing_only = false) const;
-
-  bool flipped() const { return flipped_; }
 
  private:
   std::weak_ptr<const geometry::MeshTopology> topology_;
   Memo<std::pair<const geometry::PlacedShape*, uint64_t>> shape_memo_;
   Memo<uint64_t> radiosity_memo_;
+  Memo<std::pair<const void*, uint64_t>> irradiance_memo_;
   gl::VertexArray vertex_array_;
   gl::Buffer positions_;
   gl::Buffer normals_;
   gl::Buffer radiosity_;
+  gl::Buffer irradiance_;
   gl::Buffer indices_;
   GLsizei index_count_ = 0;
   bool flipped_ = false;

@@ -8,6 +8,7 @@
 #include "render/placed_mesh.h"
 #include "render/refined_mesh.h"
 #include "render/surface_light.h"
+#include "render/vertex_light.h"
 
 namespace diaphane::render {
 
@@ -16,6 +17,8 @@ struct MeshState {
   PlacedMesh placed;
   RefinedMesh refined;  ///< for the integral
   SurfaceLight light;
+  RefinedMesh lit;  ///< for paper and lambert with shadows
+  VertexLight vertex_light;
   GpuMesh gpu;
   std::optional<CubeAtlas> atlas;
 };

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
+
+#include "render/channels.h"
 
 namespace diaphane::render {
 namespace {
@@ -18,15 +21,18 @@ uint8_t to_byte(float value) { return static_cast<uint8_t>(std::lround(255 * val
 }  // namespace
 
 Canvas make_canvas(Frame& frame, const FrameRequest& request) {
-  const size_t values = size_t{4} * request.width_px * request.height_px;
+  const size_t pixels = size_t{request.width_px} * request.height_px;
   if (request.format == PixelFormat::kSrgb8) {
     auto& image = frame.image.emplace<base::Image8>(
-        base::Image8{request.width_px, request.height_px, std::vector<uint8_t>(values)});
+        base::Image8{request.width_px, request.height_px, std::vector<uint8_t>(4 * pixels)});
     return {image.rgba.data(), request.width_px, request.height_px, 4};
   }
+  std::vector<std::string> names = channel_names(request.channels);
+  std::vector<float> values(names.size() * pixels);
+  const size_t pixel_bytes = names.size() * sizeof(float);
   auto& image = frame.image.emplace<base::ImageF>(
-      base::ImageF{request.width_px, request.height_px, {"R", "G", "B", "A"}, std::vector<float>(values)});
-  return {reinterpret_cast<uint8_t*>(image.values.data()), request.width_px, request.height_px, 4 * sizeof(float)};
+      base::ImageF{request.width_px, request.height_px, std::move(names), std::move(values)});
+  return {reinterpret_cast<uint8_t*>(image.values.data()), request.width_px, request.height_px, pixel_bytes};
 }
 
 void store_pixels(std::span<const glm::vec4> radiance, float radiance_scale, PixelFormat format, uint8_t* pixels) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "render/channels.h"
 #include "render/frame.h"
 #include "render/mesh_state.h"
 #include "render/shading.h"
@@ -30,24 +31,41 @@ class ScenePainter {
   struct Job {
     const FrameRequest& request;
     const std::atomic<bool>& cancelled;
-    std::vector<DrawnMesh> meshes;
-    geometry::Bounds bounds_mm;
-    std::vector<LightStorage> lights;
-    ViewUniforms view;
-    StageClock clock;
+    ChannelNeeds needs;
+    Variant variant{};
+    std::vector<DrawnMesh> meshes{};
+    geometry::Bounds bounds_mm{};
+    std::vector<LightStorage> lights{};
+    ViewUniforms view{};
+    StageClock clock{};
+    ChannelTile channels{};  ///< of the tile at hand
+    size_t pixels_done = 0;  ///< in earlier tiles
   };
 
+  static absl::Status check_cancelled(const Job& job);
+
+  // scene_painter_stages.cc
   void gather_meshes(Job& job);
   void bound_memory(const Job& job);
   absl::Status refine(Job& job);
   void update_shadows(Job& job);
-  absl::Status update(Job& job);
   void update_atlas(const DrawnMesh& drawn, Job& job);
+  void update_integral(const DrawnMesh& drawn, bool shadowed, Job& job);
+  absl::Status update_lit(const DrawnMesh& drawn, Job& job);
+  absl::Status update_mesh(const DrawnMesh& drawn, bool shadowed, Job& job);
+  absl::Status update(Job& job);
+
+  // scene_painter.cc
   void bind_view(const Job& job, size_t mesh_index) const;
   void draw_meshes(const Job& job) const;
   void set_viewport(const Job& job, const Tile& tile) const;
   void draw_gbuffer(Job& job, const Tile& tile);
+  void draw_forward(Job& job, const Tile& tile);
+  void shade_tile(Job& job, const Tile& tile);
+  void read_tile(Job& job, const Tile& tile, uint8_t* pixels);
   absl::Status draw_tile(Job& job, const Tile& tile, uint8_t* pixels);
+
+  // scene_painter_reference.cc
   absl::Status draw_reference_tile(Job& job, const Tile& tile, uint8_t* pixels);
 
   Shading shading_;

@@ -1,5 +1,8 @@
 #include "render/shading.h"
 
+#include <string>
+#include <vector>
+
 namespace diaphane::render {
 namespace {
 
@@ -15,20 +18,57 @@ int32_t term_bits(Terms terms) {
   return TERM_LOCAL | TERM_GLOBAL;
 }
 
+struct PassFiles {
+  const char* vertex;
+  const char* fragment;
+  bool lit;       ///< has a variant for it
+  bool channels;  ///< likewise
+};
+
+// In the order of Shading::Pass.
+constexpr PassFiles kFiles[] = {{"atlas.vert", "atlas.frag", true, false},
+                                {"gbuffer.vert", "gbuffer.frag", true, false},
+                                {"integral.vert", "integral.frag", false, true},
+                                {"fullscreen.vert", "paper_shade.frag", true, true},
+                                {"fullscreen.vert", "lambert_shade.frag", true, true}};
+
 }  // namespace
 
 absl::StatusOr<Shading> Shading::load(const gl::ShaderLibrary& library) {
-  auto atlas = gl::load_program(library, "atlas.vert", "atlas.frag");
-  if (!atlas.ok()) return atlas.status();
-  auto gbuffer = gl::load_program(library, "gbuffer.vert", "gbuffer.frag");
-  if (!gbuffer.ok()) return gbuffer.status();
-  auto integral = gl::load_program(library, "integral.vert", "integral.frag");
-  if (!integral.ok()) return integral.status();
-  auto paper = gl::load_program(library, "fullscreen.vert", "paper_shade.frag");
-  if (!paper.ok()) return paper.status();
-  auto lambert = gl::load_program(library, "fullscreen.vert", "lambert_shade.frag");
-  if (!lambert.ok()) return lambert.status();
-  return Shading(*std::move(atlas), *std::move(gbuffer), *std::move(integral), *std::move(paper), *std::move(lambert));
+  Shading shading(library);
+  for (int pass = 0; pass < kPasses; ++pass) {
+    if (absl::Status loaded = shading.load_program(static_cast<Pass>(pass), {}); !loaded.ok()) return loaded;
+  }
+  return shading;
+}
+
+size_t Shading::slot_of(Pass pass, Variant variant) {
+  const size_t lit = variant.lit && kFiles[pass].lit ? 1 : 0;
+  const size_t channels = variant.channels && kFiles[pass].channels ? 2 : 0;
+  return kVariants * pass + lit + channels;
+}
+
+absl::Status Shading::load_program(Pass pass, Variant variant) {
+  std::optional<gl::Program>& slot = programs_[slot_of(pass, variant)];
+  if (slot.has_value()) return absl::OkStatus();
+  std::string defines;
+  if (variant.lit) defines += "#define LIT\n";
+  if (variant.channels) defines += "#define CHANNELS\n";
+  auto program = gl::load_program(library_, kFiles[pass].vertex, kFiles[pass].fragment, defines);
+  if (!program.ok()) return program.status();
+  slot.emplace(*std::move(program));
+  return absl::OkStatus();
+}
+
+absl::Status Shading::prepare(Technique technique, Variant variant) {
+  std::vector<Pass> passes;
+  if (technique == Technique::kIntegral) passes = {kIntegral};
+  if (technique == Technique::kPaper) passes = {kAtlas, kGbuffer, kPaper};
+  if (technique == Technique::kLambert) passes = {kGbuffer, kLambert};
+  for (const Pass pass : passes) {
+    if (absl::Status loaded = load_program(pass, variant); !loaded.ok()) return loaded;
+  }
+  return absl::OkStatus();
 }
 
 void Shading::bind_uniforms(GLuint binding, const gl::Buffer& buffer, const void* data, size_t bytes) const {
@@ -47,16 +87,14 @@ void Shading::draw_full_screen(const gl::Program& program) const {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void Shading::shade_paper(const CubeAtlas& atlas, const PaperSettings& settings) const {
+void Shading::shade_paper(const CubeAtlas& atlas, const PaperSettings& settings, Variant variant) const {
   const PaperUniforms paper{term_bits(settings.terms), static_cast<int32_t>(settings.kernel_taps),
                             settings.global_gain};
   bind_uniforms(UNIFORMS_PAPER, paper_, &paper, sizeof paper);
   bind(atlas.box());
   gl::bind_texture(UNIT_ATLAS_IRRADIANCE, GL_TEXTURE_2D_ARRAY, atlas.irradiance());
   gl::bind_texture(UNIT_ATLAS_SURFACE, GL_TEXTURE_2D_ARRAY, atlas.surface());
-  draw_full_screen(paper_program_);
+  draw_full_screen(program(kPaper, variant));
 }
-
-void Shading::shade_lambert() const { draw_full_screen(lambert_program_); }
 
 }  // namespace diaphane::render

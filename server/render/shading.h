@@ -1,7 +1,10 @@
 // The programs of all passes, and the buffers that feed them.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "absl/status/statusor.h"
 #include "gl/objects.h"
@@ -12,39 +15,49 @@
 
 namespace diaphane::render {
 
+/// How the passes of a frame differ from the plain ones. A pass to which a difference does not matter ignores it.
+struct Variant {
+  bool lit = false;       ///< E is not the shader's own but the vertices', shadows included (LIT)
+  bool channels = false;  ///< irradiance and radiosity are made beside radiance (CHANNELS)
+};
+
 /// Render thread only. Each `bind` uploads a block and leaves it bound for the draws that follow.
 class Shading {
  public:
+  /// Every plain program. Variants follow when a frame first needs them.
   static absl::StatusOr<Shading> load(const gl::ShaderLibrary& library);
+
+  /// Loads what frames of `technique` need of `variant`. Errors: those of gl::load_program.
+  absl::Status prepare(Technique technique, Variant variant);
 
   void bind(const ViewUniforms& view) const { bind_uniforms(UNIFORMS_VIEW, view_, &view, sizeof view); }
   void bind(const MaterialUniforms& m) const { bind_uniforms(UNIFORMS_MATERIAL, material_, &m, sizeof m); }
   void bind(const BoxUniforms& box) const { bind_uniforms(UNIFORMS_BOX, box_, &box, sizeof box); }
   void bind(std::span<const LightStorage> lights) const;
 
-  const gl::Program& atlas() const { return atlas_program_; }
-  const gl::Program& gbuffer() const { return gbuffer_program_; }
-  const gl::Program& integral() const { return integral_program_; }
+  /// What was not prepared must not be asked for.
+  const gl::Program& atlas(Variant variant = {}) const { return program(kAtlas, variant); }
+  const gl::Program& gbuffer(Variant variant = {}) const { return program(kGbuffer, variant); }
+  const gl::Program& integral(Variant variant = {}) const { return program(kIntegral, variant); }
 
   /// Full screen, over a bound G-buffer; what is bound must be the mesh's.
-  void shade_paper(const CubeAtlas& atlas, const PaperSettings& settings) const;
-  void shade_lambert() const;
+  void shade_paper(const CubeAtlas& atlas, const PaperSettings& settings, Variant variant) const;
+  void shade_lambert(Variant variant) const { draw_full_screen(program(kLambert, variant)); }
 
  private:
-  Shading(gl::Program atlas, gl::Program gbuffer, gl::Program integral, gl::Program paper, gl::Program lambert)
-      : atlas_program_(std::move(atlas)),
-        gbuffer_program_(std::move(gbuffer)),
-        integral_program_(std::move(integral)),
-        paper_program_(std::move(paper)),
-        lambert_program_(std::move(lambert)) {}
+  enum Pass { kAtlas, kGbuffer, kIntegral, kPaper, kLambert, kPasses };
+  static constexpr size_t kVariants = 4;
+
+  explicit Shading(const gl::ShaderLibrary& library) : library_(library) {}
+
+  static size_t slot_of(Pass pass, Variant variant);
+  absl::Status load_program(Pass pass, Variant variant);
+  const gl::Program& program(Pass pass, Variant variant) const { return *programs_[slot_of(pass, variant)]; }
   void bind_uniforms(GLuint binding, const gl::Buffer& buffer, const void* data, size_t bytes) const;
   void draw_full_screen(const gl::Program& program) const;
 
-  gl::Program atlas_program_;
-  gl::Program gbuffer_program_;
-  gl::Program integral_program_;
-  gl::Program paper_program_;
-  gl::Program lambert_program_;
+  gl::ShaderLibrary library_;
+  std::array<std::optional<gl::Program>, kPasses * kVariants> programs_;
   gl::VertexArray no_attributes_;
   gl::Buffer view_;
   gl::Buffer material_;

@@ -33,6 +33,8 @@ class SurfaceLight {
   std::span<const glm::vec3> radiosity() const { return radiosity_; }
   /// E of the last update, at triangles and vertices.
   const SurfaceIrradiance& irradiance() const { return irradiance_.result(); }
+  /// Grows whenever irradiance changes.
+  uint64_t irradiance_generation() const { return irradiance_generation_; }
   /// Memory that the integral holds.
   size_t bytes() const { return integral_ == nullptr ? 0 : integral_->bytes(); }
   /// Grows whenever radiosity changes.

@@ -17,6 +17,11 @@ struct Tile {
   uint32_t x_px, y_px, width_px, height_px;
 };
 
+/// Where row `row` of `tile`, from its lowest, begins in a picture whose pixels count from the top left.
+inline size_t first_pixel(uint32_t width_px, uint32_t height_px, const Tile& tile, uint32_t row) {
+  return size_t{height_px - 1 - tile.y_px - row} * width_px + tile.x_px;
+}
+
 /// Calls `draw` for every tile until one fails.
 template <typename Draw>
 absl::Status for_each_tile(uint32_t width_px, uint32_t height_px, Draw&& draw) {
@@ -37,7 +42,7 @@ struct Canvas {
   size_t bytes_per_pixel;
 };
 
-/// Copies a tile's pixels, rows bottom to top, to their place.
-void place_tile(const Canvas& canvas, const Tile& tile, const uint8_t* pixels);
+/// Copies a tile's pixels, rows bottom to top and `pixel_bytes` each, to the first bytes of their place.
+void place_tile(const Canvas& canvas, const Tile& tile, const uint8_t* pixels, size_t pixel_bytes);
 
 }  // namespace diaphane::render

@@ -16,8 +16,7 @@ struct ViewUniforms {
   glm::vec4 eye_mm{0};
   float radiance_scale = 1;
   float mesh_id = 0;
-  float flipped = 0;
-  float unused = 0;
+  float unused[2] = {};
 };
 static_assert(sizeof(ViewUniforms) == 96);
 
@@ -51,7 +50,8 @@ struct LightStorage {
   glm::vec4 position_mm{0};     ///< xyz; or the unit direction to a directional light
   glm::vec4 power{0};           ///< rgb: W·sr⁻¹, or W·mm⁻² of a directional light; a: 1 directional, else 0
   glm::vec4 axis{0, 0, 0, -2};  ///< xyz: unit axis of a spot's cone; a: cosine of its outer angle, −2 without a cone
-  glm::vec4 shape{0};           ///< x: 1/(cosine inner − cosine outer); y: radius in mm
+  glm::vec4 shape{0};           ///< x: 1/(cosine inner − cosine outer); y: radius in mm; z: for one body's shading
+                                ///< with shadows, the share of the light's power that reaches it
   bool operator==(const LightStorage&) const = default;
 };
 static_assert(sizeof(LightStorage) == 64);

@@ -9,7 +9,26 @@ void attach(GLenum attachment, const gl::Texture& texture) {
   glFramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture.id(), 0);
 }
 
-constexpr float kNothing[] = {0, 0, 0, 0};
+void draw_to_first(GLsizei count) {
+  const GLenum attachments[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
+  glDrawBuffers(count, attachments);
+}
+
+void clear_colours(GLint count) {
+  constexpr float kNothing[] = {0, 0, 0, 0};
+  for (GLint i = 0; i < count; ++i) glClearBufferfv(GL_COLOR, i, kNothing);
+}
+
+void clear_depth() {
+  const float far = 1;
+  glClearBufferfv(GL_DEPTH, 0, &far);
+  glEnable(GL_DEPTH_TEST);
+}
+
+void read_float(GLenum attachment, uint32_t width_px, uint32_t height_px, glm::vec4* pixels) {
+  glReadBuffer(attachment);
+  glReadPixels(0, 0, static_cast<GLsizei>(width_px), static_cast<GLsizei>(height_px), GL_RGBA, GL_FLOAT, pixels);
+}
 
 }  // namespace
 
@@ -24,8 +43,7 @@ ViewTargets::ViewTargets(uint32_t width_px, uint32_t height_px, PixelFormat form
   attach(GL_COLOR_ATTACHMENT0, position_);
   attach(GL_COLOR_ATTACHMENT1, normal_);
   attach(GL_DEPTH_ATTACHMENT, depth_);
-  const GLenum attachments[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
-  glDrawBuffers(2, attachments);
+  draw_to_first(2);
 
   glBindFramebuffer(GL_FRAMEBUFFER, shading_.id());
   attach(GL_COLOR_ATTACHMENT0, picture_);
@@ -35,32 +53,57 @@ ViewTargets::ViewTargets(uint32_t width_px, uint32_t height_px, PixelFormat form
   attach(GL_DEPTH_ATTACHMENT, depth_);
 }
 
-void ViewTargets::begin_gbuffer() const {
-  const float far = 1;
-  glBindFramebuffer(GL_FRAMEBUFFER, gbuffer_.id());
-  glClearBufferfv(GL_COLOR, 0, kNothing);
-  glClearBufferfv(GL_COLOR, 1, kNothing);
-  glClearBufferfv(GL_DEPTH, 0, &far);
-  glEnable(GL_DEPTH_TEST);
+const ViewTargets::LitGbuffer& ViewTargets::lit_gbuffer() {
+  if (lit_gbuffer_.has_value()) return *lit_gbuffer_;
+  const LitGbuffer& made = lit_gbuffer_.emplace();
+  gl::storage_2d(made.irradiance, GL_RGBA32F, width_px_, height_px_);
+  glBindFramebuffer(GL_FRAMEBUFFER, made.framebuffer.id());
+  attach(GL_COLOR_ATTACHMENT0, position_);
+  attach(GL_COLOR_ATTACHMENT1, normal_);
+  attach(GL_COLOR_ATTACHMENT2, made.irradiance);
+  attach(GL_DEPTH_ATTACHMENT, depth_);
+  draw_to_first(3);
+  return made;
 }
 
-void ViewTargets::begin_forward() const {
-  const float far = 1;
-  glBindFramebuffer(GL_FRAMEBUFFER, forward_.id());
-  glClearBufferfv(GL_COLOR, 0, kNothing);
-  glClearBufferfv(GL_DEPTH, 0, &far);
-  glEnable(GL_DEPTH_TEST);
+const ViewTargets::Channels& ViewTargets::channels() {
+  if (channels_.has_value()) return *channels_;
+  const Channels& made = channels_.emplace();
+  gl::storage_2d(made.irradiance, GL_RGBA32F, width_px_, height_px_);
+  gl::storage_2d(made.radiosity, GL_RGBA32F, width_px_, height_px_);
+  for (const gl::Framebuffer* framebuffer : {&made.shading, &made.forward}) {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer->id());
+    attach(GL_COLOR_ATTACHMENT0 + TARGET_RADIANCE, picture_);
+    attach(GL_COLOR_ATTACHMENT0 + TARGET_IRRADIANCE, made.irradiance);
+    attach(GL_COLOR_ATTACHMENT0 + TARGET_RADIOSITY, made.radiosity);
+    draw_to_first(3);
+  }
+  attach(GL_DEPTH_ATTACHMENT, depth_);
+  return made;
+}
+
+void ViewTargets::begin_gbuffer(Variant variant) {
+  glBindFramebuffer(GL_FRAMEBUFFER, variant.lit ? lit_gbuffer().framebuffer.id() : gbuffer_.id());
+  clear_colours(variant.lit ? 3 : 2);
+  clear_depth();
+}
+
+void ViewTargets::begin_forward(Variant variant) {
+  glBindFramebuffer(GL_FRAMEBUFFER, variant.channels ? channels().forward.id() : forward_.id());
+  clear_colours(variant.channels ? 3 : 1);
+  clear_depth();
   glEnable(GL_FRAMEBUFFER_SRGB);
 }
 
-void ViewTargets::begin_shading() const {
-  glBindFramebuffer(GL_FRAMEBUFFER, shading_.id());
-  glClearBufferfv(GL_COLOR, 0, kNothing);
+void ViewTargets::begin_shading(Variant variant) {
+  glBindFramebuffer(GL_FRAMEBUFFER, variant.channels ? channels().shading.id() : shading_.id());
+  clear_colours(variant.channels ? 3 : 1);
   glDisable(GL_DEPTH_TEST);
   // Linear radiance becomes sRGB as it is stored, in pictures alone.
   glEnable(GL_FRAMEBUFFER_SRGB);
   gl::bind_texture(UNIT_GBUFFER_POSITION, GL_TEXTURE_2D, position_);
   gl::bind_texture(UNIT_GBUFFER_NORMAL, GL_TEXTURE_2D, normal_);
+  if (variant.lit) gl::bind_texture(UNIT_GBUFFER_IRRADIANCE, GL_TEXTURE_2D, lit_gbuffer().irradiance);
 }
 
 void ViewTargets::read_back(uint32_t width_px, uint32_t height_px, void* pixels) const {
@@ -73,12 +116,17 @@ void ViewTargets::read_back(uint32_t width_px, uint32_t height_px, void* pixels)
 void ViewTargets::read_gbuffer(uint32_t width_px, uint32_t height_px, glm::vec4* positions, glm::vec4* normals) const {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, gbuffer_.id());
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  const auto width = static_cast<GLsizei>(width_px);
-  const auto height = static_cast<GLsizei>(height_px);
-  glReadBuffer(GL_COLOR_ATTACHMENT0);
-  glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, positions);
-  glReadBuffer(GL_COLOR_ATTACHMENT1);
-  glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, normals);
+  read_float(GL_COLOR_ATTACHMENT0, width_px, height_px, positions);
+  read_float(GL_COLOR_ATTACHMENT1, width_px, height_px, normals);
+}
+
+void ViewTargets::read_channels(uint32_t width_px, uint32_t height_px, glm::vec4* irradiance,
+                                glm::vec4* radiosity) const {
+  if (!channels_.has_value()) return;
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, channels_->shading.id());
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  read_float(GL_COLOR_ATTACHMENT0 + TARGET_IRRADIANCE, width_px, height_px, irradiance);
+  read_float(GL_COLOR_ATTACHMENT0 + TARGET_RADIOSITY, width_px, height_px, radiosity);
 }
 
 }  // namespace diaphane::render

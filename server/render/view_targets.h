@@ -2,14 +2,17 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "gl/objects.h"
 #include "glm/vec4.hpp"
 #include "render/frame.h"
+#include "render/shading.h"
 
 namespace diaphane::render {
 
-/// Targets of one tile. Kept from frame to frame while the size and format are the same. Render thread only.
+/// Targets of one tile. Kept from frame to frame while the size and format are the same; what a variant needs more is
+/// made when it is first used. Render thread only.
 class ViewTargets {
  public:
   ViewTargets(uint32_t width_px, uint32_t height_px, PixelFormat format);
@@ -18,13 +21,13 @@ class ViewTargets {
     return width_px_ == width_px && height_px_ == height_px && format_ == format;
   }
 
-  /// Clears the G-buffer and makes it the target.
-  void begin_gbuffer() const;
+  /// Clears the G-buffer and makes it the target; E is a part of it where the variant is lit.
+  void begin_gbuffer(Variant variant);
   /// Clears the picture to transparent black and the depth, and makes both the target: for meshes drawn straight into
-  /// it.
-  void begin_forward() const;
+  /// it. Channels of the variant likewise.
+  void begin_forward(Variant variant);
   /// Clears the picture to transparent black, makes it the target, and binds the G-buffer for sampling.
-  void begin_shading() const;
+  void begin_shading(Variant variant);
 
   /// Reads `width_px` × `height_px` pixels from the tile's lowest-left corner. Rows bottom to top; `pixels` holds RGBA8
   /// or RGBA32F by the format.
@@ -33,7 +36,23 @@ class ViewTargets {
   /// Reads the G-buffer: mm and mesh id, normal and facet sine; RGBA32F, rows bottom to top.
   void read_gbuffer(uint32_t width_px, uint32_t height_px, glm::vec4* positions, glm::vec4* normals) const;
 
+  /// Reads what the last pass with channels left: E and B in rgb, RGBA32F, rows bottom to top.
+  void read_channels(uint32_t width_px, uint32_t height_px, glm::vec4* irradiance, glm::vec4* radiosity) const;
+
  private:
+  struct LitGbuffer {
+    gl::Texture irradiance;
+    gl::Framebuffer framebuffer;
+  };
+  struct Channels {
+    gl::Texture irradiance;
+    gl::Texture radiosity;
+    gl::Framebuffer shading;
+    gl::Framebuffer forward;
+  };
+  const LitGbuffer& lit_gbuffer();
+  const Channels& channels();
+
   uint32_t width_px_;
   uint32_t height_px_;
   PixelFormat format_;
@@ -44,6 +63,8 @@ class ViewTargets {
   gl::Framebuffer gbuffer_;
   gl::Framebuffer shading_;
   gl::Framebuffer forward_;
+  std::optional<LitGbuffer> lit_gbuffer_;
+  std::optional<Channels> channels_;
 };
 
 }  // namespace diaphane::render

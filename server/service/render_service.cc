@@ -6,6 +6,7 @@
 #include "absl/synchronization/mutex.h"
 #include "base/status.h"
 #include "service/convert/frame.h"
+#include "service/progress_reactor.h"
 #include "service/unary.h"
 
 namespace diaphane::service {
@@ -54,8 +55,19 @@ absl::StatusOr<session::FrameTask> make_task(const scene::SceneStore& store, con
   }
   task->request.scene = *std::move(scene);
   task->deadline = absl::FromChrono(context.deadline());
+  if (task->request.settings.technique == render::Technique::kReference) {
+    task->time_limit = limits.max_reference_time;
+    task->limit_field = "reference_seconds";
+  }
   return task;
 }
+
+/// A stream that ends before it begins.
+class RefusedStream final : public grpc::ServerWriteReactor<v1::RenderFrameWithProgressResponse> {
+ public:
+  explicit RefusedStream(const absl::Status& status) { Finish(to_grpc(status)); }
+  void OnDone() override { delete this; }
+};
 
 }  // namespace
 
@@ -65,6 +77,13 @@ grpc::ServerUnaryReactor* RenderService::RenderFrame(grpc::CallbackServerContext
   absl::StatusOr<session::FrameTask> task = make_task(store_, limits_, *context, *request);
   if (!task.ok()) return answer(context, task.status());
   return new FrameReactor(render_thread_, *std::move(task), response);
+}
+
+grpc::ServerWriteReactor<v1::RenderFrameWithProgressResponse>* RenderService::RenderFrameWithProgress(
+    grpc::CallbackServerContext* context, const v1::RenderFrameRequest* request) {
+  absl::StatusOr<session::FrameTask> task = make_task(store_, limits_, *context, *request);
+  if (!task.ok()) return new RefusedStream(task.status());
+  return new ProgressReactor(render_thread_, *std::move(task));
 }
 
 }  // namespace diaphane::service

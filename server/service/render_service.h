@@ -16,6 +16,8 @@ class RenderService final : public v1::RenderService::CallbackService {
  private:
   grpc::ServerUnaryReactor* RenderFrame(grpc::CallbackServerContext* context, const v1::RenderFrameRequest* request,
                                         v1::RenderFrameResponse* response) override;
+  grpc::ServerWriteReactor<v1::RenderFrameWithProgressResponse>* RenderFrameWithProgress(
+      grpc::CallbackServerContext* context, const v1::RenderFrameRequest* request) override;
 
   const ServiceLimits limits_;
   const scene::SceneStore& store_;

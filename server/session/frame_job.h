@@ -1,6 +1,7 @@
 // A frame that somebody waits for.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -8,8 +9,11 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/time/clock.h"
 #include "absl/time/time.h"
+#include "base/status.h"
 #include "encode/encode.h"
+#include "fmt/format.h"
 #include "render/frame.h"
 
 namespace diaphane::session {
@@ -30,6 +34,9 @@ struct FrameTask {
   render::FrameRequest request;  ///< `format` is set from `encoding`
   encode::Encoding encoding;
   absl::Time deadline = absl::InfiniteFuture();
+  /// How long it may take from when the renderer begins; then it ends with DEADLINE_EXCEEDED, naming `limit_field`.
+  absl::Duration time_limit = absl::InfiniteDuration();
+  std::string_view limit_field;
   /// Called exactly once, on whatever thread ends the job. It must not block.
   std::function<void(absl::StatusOr<EncodedFrame>)> done;
 };
@@ -41,8 +48,19 @@ class FrameJob {
 
   const render::FrameRequest& request() const { return task_.request; }
   const encode::Encoding& encoding() const { return task_.encoding; }
-  absl::Time deadline() const { return task_.deadline; }
   absl::Time submitted() const { return submitted_; }
+
+  /// The renderer begins. Once, before expires() is asked from another thread, which the caller sees to.
+  void begin() { limit_ = absl::Now() + task_.time_limit; }
+  /// When it ends unfinished: at its deadline, or at its limit once it has begun.
+  absl::Time expires() const { return std::min(task_.deadline, limit_); }
+  /// What it ends with then.
+  absl::Status expired() const {
+    if (task_.deadline <= limit_) return absl::DeadlineExceededError("the frame's deadline passed");
+    return base::field_error(
+        absl::StatusCode::kDeadlineExceeded,
+        {std::string(task_.limit_field), "more", fmt::format("at most {}", absl::ToDoubleSeconds(task_.time_limit))});
+  }
 
   /// Once set, stays set; the renderer stops when it sees it.
   const std::atomic<bool>& cancelled() const { return cancelled_; }
@@ -59,6 +77,7 @@ class FrameJob {
  private:
   FrameTask task_;
   const absl::Time submitted_ = absl::Now();
+  absl::Time limit_ = absl::InfiniteFuture();
   std::atomic<bool> cancelled_{false};
   std::atomic<bool> finished_{false};
 };

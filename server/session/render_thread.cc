@@ -109,7 +109,9 @@ RenderThread::JobPtr RenderThread::next_job() {
   if (quit_) return nullptr;
   JobPtr job = queued_.front();
   queued_.erase(queued_.begin());
+  job->begin();
   started_.push_back(job);
+  changed_.SignalAll();  // its time limit runs
   return job;
 }
 
@@ -154,8 +156,8 @@ void RenderThread::watch_deadlines() {
       absl::Time next = absl::InfiniteFuture();
       for (std::vector<JobPtr>* jobs : {&queued_, &started_}) {
         std::erase_if(*jobs, [&](const JobPtr& job) {
-          if (job->deadline() > now) {
-            next = std::min(next, job->deadline());
+          if (job->expires() > now) {
+            next = std::min(next, job->expires());
             return false;
           }
           job->cancel();
@@ -169,7 +171,7 @@ void RenderThread::watch_deadlines() {
       }
       changed_.SignalAll();
     }
-    for (const JobPtr& job : expired) job->finish(absl::DeadlineExceededError("the frame's deadline passed"));
+    for (const JobPtr& job : expired) job->finish(job->expired());
     expired.clear();
   }
 }

@@ -40,8 +40,8 @@ class RenderThread {
   RenderThread& operator=(const RenderThread&) = delete;
 
   /// RESOURCE_EXHAUSTED when the queue is full, UNAVAILABLE once stop() was called; then `done` is never called. Else
-  /// it is, exactly once: with the frame, the renderer's error, CANCELLED, DEADLINE_EXCEEDED at the task's deadline, or
-  /// UNAVAILABLE from stop().
+  /// it is, exactly once: with the frame, the renderer's error, CANCELLED, DEADLINE_EXCEEDED at the task's deadline or
+  /// time limit, or UNAVAILABLE from stop().
   absl::StatusOr<std::shared_ptr<FrameJob>> submit(FrameTask task) ABSL_LOCKS_EXCLUDED(mutex_);
 
   /// Ends `job` with CANCELLED before it returns, wherever it is; nothing when it has ended.

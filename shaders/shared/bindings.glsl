@@ -2,11 +2,13 @@
 #define ATTRIBUTE_POSITION 0
 #define ATTRIBUTE_NORMAL 1
 #define ATTRIBUTE_RADIOSITY 2
+#define ATTRIBUTE_IRRADIANCE 3
 
 #define UNIT_GBUFFER_POSITION 0
 #define UNIT_GBUFFER_NORMAL 1
 #define UNIT_ATLAS_IRRADIANCE 2
 #define UNIT_ATLAS_SURFACE 3
+#define UNIT_GBUFFER_IRRADIANCE 4
 
 #define UNIFORMS_VIEW 0
 #define UNIFORMS_MATERIAL 1
@@ -14,6 +16,11 @@
 #define UNIFORMS_PAPER 3
 
 #define STORAGE_LIGHTS 0
+
+// Where passes that make extra channels leave what they make.
+#define TARGET_RADIANCE 0
+#define TARGET_IRRADIANCE 1
+#define TARGET_RADIOSITY 2
 
 #define TERM_LOCAL 1
 #define TERM_GLOBAL 2

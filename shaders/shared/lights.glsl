@@ -5,7 +5,7 @@ struct Light {
   vec4 position_mm;  // xyz; or the unit direction to a directional light
   vec4 power;        // rgb: W/sr, or W/mm² of a directional light; a: 1 directional, else 0
   vec4 axis;         // xyz: unit axis of a spot's cone; a: cosine of its outer angle, −2 without a cone
-  vec4 shape;        // x: 1/(cosine inner − cosine outer); y: radius in mm
+  vec4 shape;        // x: 1/(cosine inner − cosine outer); y: radius in mm; z: share that the body gets, with shadows
 };
 
 layout(std430, binding = STORAGE_LIGHTS) readonly buffer Lights {

@@ -5,5 +5,4 @@ layout(std140, binding = UNIFORMS_VIEW) uniform View {
   vec4 eye_mm;            // xyz
   float radiance_scale;   // 2^exposure for pictures, 1 for linear pixels
   float mesh_id;          // of the mesh being drawn, 1…
-  float flipped;          // 1: the mesh's triangles run clockwise
 };

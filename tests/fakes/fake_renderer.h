@@ -5,8 +5,11 @@
 #include <functional>
 #include <memory>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "absl/synchronization/mutex.h"
+#include "render/channels.h"
 #include "render/frame.h"
 #include "session/render_thread.h"
 
@@ -22,6 +25,16 @@ class RendererControl {
   void ignore_cancellation() { set(&deaf_, true); }
   /// The next frame throws std::bad_alloc.
   void run_out_of_memory() { set(&out_of_memory_, true); }
+
+  /// What the next frames say of their progress, one after the other, before they are held.
+  void tell(std::vector<double> shares) {
+    absl::MutexLock lock(&mutex_);
+    shares_ = std::move(shares);
+  }
+  std::vector<double> shares() {
+    absl::MutexLock lock(&mutex_);
+    return shares_;
+  }
 
   /// Blocks until `count` frames have started.
   void wait_for_started(int count) {
@@ -54,16 +67,21 @@ class RendererControl {
   bool held_ = false;
   bool deaf_ = false;
   bool out_of_memory_ = false;
+  std::vector<double> shares_;
   int started_ = 0;
 };
 
-/// Every pixel tells the scene's revision: (revision, width, height, 255) modulo 256, or the same as floats.
+/// Every pixel tells the scene's revision: (revision, width, height, 255) modulo 256, or the same as floats and then
+/// the number of each extra channel.
 class FakeRenderer : public render::FrameRenderer {
  public:
   explicit FakeRenderer(std::shared_ptr<RendererControl> control) : control_(std::move(control)) {}
 
   absl::StatusOr<render::Frame> render(const render::FrameRequest& request,
                                        const std::atomic<bool>& cancelled) override {
+    for (const double share : control_->shares()) {
+      if (request.progress) request.progress(share);
+    }
     if (!control_->pass(cancelled)) return absl::CancelledError("seen by the renderer");
     render::Frame frame;
     frame.scene_revision = request.scene->revision;
@@ -76,8 +94,12 @@ class FakeRenderer : public render::FrameRenderer {
       for (size_t i = 0; i < 4 * pixels; ++i) image.rgba.push_back(static_cast<uint8_t>(values[i % 4]));
       frame.image = std::move(image);
     } else {
-      base::ImageF image{request.width_px, request.height_px, {"R", "G", "B", "A"}, {}};
-      for (size_t i = 0; i < 4 * pixels; ++i) image.values.push_back(static_cast<float>(values[i % 4]));
+      base::ImageF image{request.width_px, request.height_px, render::channel_names(request.channels), {}};
+      const size_t channels = image.channels.size();
+      for (size_t i = 0; i < channels * pixels; ++i) {
+        const size_t channel = i % channels;
+        image.values.push_back(static_cast<float>(channel < 4 ? values[channel] : channel));
+      }
       frame.image = std::move(image);
     }
     return frame;

@@ -35,6 +35,7 @@ struct ServerInfo {
 
   uint64_t max_pixels = 0;            ///< of one frame
   uint64_t max_reference_pixels = 0;  ///< of one frame by the reference technique
+  double max_reference_seconds = 0;   ///< that such a frame may be drawn for
   uint32_t max_vertices_per_mesh = 0;
   uint32_t max_triangles_per_mesh = 0;
   uint32_t max_scenes = 0;

@@ -38,7 +38,8 @@ struct NamedQuality {
 inline constexpr NamedQuality kQualities[] = {
     {"draft", Quality::kDraft}, {"normal", Quality::kNormal}, {"fine", Quality::kFine}};
 
-/// Whether meshes hide lights. The default is on for the integral and the reference, off for the others.
+/// Whether meshes hide lights, each other's and their own. The default is on for the integral and the reference, off
+/// for paper and lambert.
 enum class Shadows { kDefault = 0, kOn = 1, kOff = 2 };
 
 struct NamedShadows {
@@ -65,8 +66,8 @@ struct PaperSettings {
 
 struct RenderSettings {
   Technique technique = Technique::kServerDefault;
-  Quality quality = Quality::kNormal;   ///< of the integral
-  Shadows shadows = Shadows::kDefault;  ///< of the integral and the reference
+  Quality quality = Quality::kNormal;  ///< of the integral
+  Shadows shadows = Shadows::kDefault;
   PaperSettings paper;
   float exposure_ev = 0;  ///< stops, -32..32; multiplies radiance by 2^exposure_ev before sRGB, never in EXR
 };
@@ -82,12 +83,34 @@ enum class ImageFormat {
   kExr = 3    ///< linear outgoing radiance, W·mm⁻²·sr⁻¹, 32-bit float RGBA
 };
 
+/// What an EXR tells beside its colour, of the surface that each pixel's centre shows, as 32-bit floats. Where a pixel
+/// shows none, alpha and all of these are 0, but for depth, which is +infinity.
+enum class Channel {
+  kIrradiance = 1,  ///< irradiance.R .G .B: the light that enters, W·mm⁻², Fresnel included (except by lambert)
+  kRadiosity = 2,  ///< radiosity.R .G .B: the light that leaves, W·mm⁻²: the colour is Ft/π times it, by lambert 1/π
+  kNormal = 3,     ///< N.X .Y .Z: unit, in the scene's axes
+  kDepth = 4,      ///< Z: along the view axis from the eye, scene units
+  kPosition = 5  ///< P.X .Y .Z: scene units
+};
+
+struct NamedChannel {
+  std::string_view name;
+  Channel channel;
+};
+inline constexpr NamedChannel kChannels[] = {{"irradiance", Channel::kIrradiance},
+                                             {"radiosity", Channel::kRadiosity},
+                                             {"normal", Channel::kNormal},
+                                             {"depth", Channel::kDepth},
+                                             {"position", Channel::kPosition}};
+
 struct RenderOptions {
   Camera camera;
   Size size;
   RenderSettings settings;
   ImageFormat format = ImageFormat::kPng;
   uint32_t jpeg_quality = 90;  ///< 1..100
+  /// Of EXR alone, each at most once; the frame has then at most a quarter of ServerInfo::max_pixels.
+  std::vector<Channel> channels;
 };
 
 /// What one stage of the server did for a frame.

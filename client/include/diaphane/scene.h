@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -122,8 +123,13 @@ class Scene {
   /// One frame of the newest revision: it shows every change that returned before this call.
   ///
   /// Errors: FAILED_PRECONDITION no mesh; INVALID_ARGUMENT camera, size or settings out of range; RESOURCE_EXHAUSTED
-  /// the server's render queue is full.
+  /// the server's render queue is full; DEADLINE_EXCEEDED also past ServerInfo::max_reference_seconds.
   absl::StatusOr<RenderedFrame> render(const RenderOptions& options = {}) const;
+
+  /// The same, and `progress` is told the share of the work done, 0..1, at most about ten times a second and at last 1,
+  /// on the calling thread. Only Technique::kReference knows what lies between. It grows, unless the connection was
+  /// lost and the frame begun anew.
+  absl::StatusOr<RenderedFrame> render(const RenderOptions& options, const std::function<void(double)>& progress) const;
 
   /// Deletes the scene and all that is in it. Runs even once ClientOptions::stop was requested.
   absl::Status remove() const;

@@ -1,6 +1,7 @@
 #include "service/convert/frame.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "base/status.h"
@@ -56,18 +57,33 @@ absl::StatusOr<diffusion::Quality> from_proto(v1::Quality quality) {
   }
 }
 
-absl::StatusOr<bool> shadows_from_proto(v1::Shadows shadows, render::Technique technique) {
-  const bool available = technique == render::Technique::kIntegral || technique == render::Technique::kReference;
+absl::StatusOr<std::optional<bool>> from_proto(v1::Shadows shadows) {
   switch (shadows) {
     case v1::SHADOWS_UNSPECIFIED:
-      return available;
+      return std::optional<bool>();
     case v1::SHADOWS_OFF:
-      return false;
+      return std::optional<bool>(false);
     case v1::SHADOWS_ON:
-      if (available) return true;
-      return base::invalid_field("settings.shadows", "off with the paper and lambert techniques", "on");
+      return std::optional<bool>(true);
     default:
       return unknown_value("settings.shadows", shadows);
+  }
+}
+
+absl::StatusOr<render::Channel> channel_from_proto(v1::Channel channel, std::string_view field) {
+  switch (channel) {
+    case v1::CHANNEL_IRRADIANCE:
+      return render::Channel::kIrradiance;
+    case v1::CHANNEL_RADIOSITY:
+      return render::Channel::kRadiosity;
+    case v1::CHANNEL_NORMAL:
+      return render::Channel::kNormal;
+    case v1::CHANNEL_DEPTH:
+      return render::Channel::kDepth;
+    case v1::CHANNEL_POSITION:
+      return render::Channel::kPosition;
+    default:
+      return unknown_value(field, channel);
   }
 }
 
@@ -138,7 +154,7 @@ absl::StatusOr<render::RenderSettings> from_proto(const v1::RenderSettings& mess
   if (!technique.ok()) return technique.status();
   const absl::StatusOr<diffusion::Quality> quality = from_proto(message.quality());
   if (!quality.ok()) return quality.status();
-  const absl::StatusOr<bool> shadows = shadows_from_proto(message.shadows(), *technique);
+  const absl::StatusOr<std::optional<bool>> shadows = from_proto(message.shadows());
   if (!shadows.ok()) return shadows.status();
   const absl::StatusOr<render::PaperSettings> paper = from_proto(message.paper());
   if (!paper.ok()) return paper.status();
@@ -177,6 +193,24 @@ absl::StatusOr<encode::Encoding> from_proto(const v1::Encoding& message) {
   return encoding;
 }
 
+absl::StatusOr<std::vector<render::Channel>> channels_from_proto(const v1::Encoding& message) {
+  if (message.channels_size() > 0 && message.format() != v1::IMAGE_FORMAT_EXR) {
+    return base::invalid_field("encoding.channels", "none, but of IMAGE_FORMAT_EXR",
+                               fmt::format("{}", message.channels_size()));
+  }
+  std::vector<render::Channel> channels;
+  for (int i = 0; i < message.channels_size(); ++i) {
+    const std::string field = fmt::format("encoding.channels[{}]", i);
+    const absl::StatusOr<render::Channel> channel = channel_from_proto(message.channels(i), field);
+    if (!channel.ok()) return channel.status();
+    if (std::find(channels.begin(), channels.end(), *channel) != channels.end()) {
+      return base::invalid_field(field, "given once", v1::Channel_Name(message.channels(i)));
+    }
+    channels.push_back(*channel);
+  }
+  return channels;
+}
+
 absl::Status check_size(const v1::Size& message, uint64_t max_pixels) {
   absl::Status width = check_range("size.width_px", message.width_px(), 1, kLargestSide_px);
   if (!width.ok()) return width;
@@ -199,7 +233,15 @@ absl::StatusOr<session::FrameTask> from_proto(const v1::RenderFrameRequest& mess
   }
   const absl::StatusOr<encode::Encoding> encoding = from_proto(message.encoding());
   if (!encoding.ok()) return encoding.status();
+  absl::StatusOr<std::vector<render::Channel>> channels = channels_from_proto(message.encoding());
+  if (!channels.ok()) return channels.status();
+  if (!channels->empty()) {
+    // Seventeen values a pixel at most, where max_pixels speaks of four.
+    absl::Status size = check_size(message.size(), max_pixels / 4);
+    if (!size.ok()) return size;
+  }
   session::FrameTask task;
+  task.request.channels = *std::move(channels);
   task.request.camera = *camera;
   task.request.width_px = message.size().width_px();
   task.request.height_px = message.size().height_px();

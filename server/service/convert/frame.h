@@ -16,6 +16,10 @@ absl::StatusOr<encode::Encoding> from_proto(const v1::Encoding& message);
 /// Of a frame by the reference technique, which takes seconds as it is.
 inline constexpr uint64_t kMaxReferencePixels = uint64_t{1} << 20;
 
+/// What a frame tells beside its colour. Errors: INVALID_ARGUMENT for an unknown channel, one given twice, or any of a
+/// format other than EXR.
+absl::StatusOr<std::vector<render::Channel>> channels_from_proto(const v1::Encoding& message);
+
 /// OK when each side is 1..8192 and the product at most `max_pixels`.
 absl::Status check_size(const v1::Size& message, uint64_t max_pixels);
 

@@ -26,6 +26,7 @@ void to_proto(const ServiceLimits& limits, v1::Limits& message) {
   message.set_max_chunk_bytes(kMaxChunkBytes);
   message.set_max_queued_frames(limits.max_queued_frames);
   message.set_max_reference_pixels(kMaxReferencePixels);
+  message.set_max_reference_seconds(absl::ToDoubleSeconds(limits.max_reference_time));
 }
 
 }  // namespace diaphane::service

@@ -11,6 +11,12 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kListening = "listening on ";
 
+std::vector<std::string> server_words(const std::vector<std::string>& flags) {
+  std::vector<std::string> words{"--listen", "127.0.0.1:0", "--exit-with-stdin", "--warm", "none"};
+  words.insert(words.end(), flags.begin(), flags.end());
+  return words;
+}
+
 }  // namespace
 
 CliTest::CliTest() {
@@ -36,9 +42,8 @@ std::vector<std::string> CliTest::render(const std::vector<std::string>& more) {
   return words;
 }
 
-CliWithServerTest::CliWithServerTest()
-    : server_(internal::ChildProcess::start(std::string(DIAPHANE_BIN_DIR) + "/diaphane-server",
-                                            {"--listen", "127.0.0.1:0", "--exit-with-stdin", "--warm", "none"},
+CliWithServerTest::CliWithServerTest(const std::vector<std::string>& flags)
+    : server_(internal::ChildProcess::start(std::string(DIAPHANE_BIN_DIR) + "/diaphane-server", server_words(flags),
                                             /*inherit_stderr=*/true)
                   .value()) {
   const std::string line = server_.read_line(std::chrono::minutes(2), {}).value();

@@ -33,7 +33,8 @@ class CliTest : public testing::Test {
 /// With a server on a free port of the loopback interface.
 class CliWithServerTest : public CliTest {
  protected:
-  CliWithServerTest();
+  /// `flags` for the server beside those that every one of these has.
+  explicit CliWithServerTest(const std::vector<std::string>& flags = {});
   ~CliWithServerTest() override { server_.stop(std::chrono::seconds(30)); }
 
   std::vector<std::string> with_server(std::vector<std::string> words) const;

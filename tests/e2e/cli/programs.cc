@@ -1,6 +1,7 @@
 #include "programs.h"
 
 #include <fcntl.h>
+#include <pty.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,27 +18,49 @@ void redirect(const fs::path& path, int descriptor) {
   dup2(file, descriptor);
 }
 
-}  // namespace
-
-Finished run_diaphane(const fs::path& folder, const std::vector<std::string>& arguments) {
+// Starts it with its stdout in .stdout, and stderr where `redirect_stderr` says.
+template <typename Redirect>
+pid_t start_diaphane(const fs::path& folder, const std::vector<std::string>& arguments,
+                     const Redirect& redirect_stderr) {
   const std::string program = std::string(DIAPHANE_BIN_DIR) + "/diaphane";
-  const fs::path out = folder / ".stdout";
-  const fs::path err = folder / ".stderr";
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   const pid_t child = fork();
-  if (child == 0) {
-    if (chdir(folder.c_str()) != 0) _exit(126);
-    redirect(out, STDOUT_FILENO);
-    redirect(err, STDERR_FILENO);
-    execv(program.c_str(), argv.data());
-    _exit(127);
-  }
+  if (child != 0) return child;
+  if (chdir(folder.c_str()) != 0) _exit(126);
+  redirect(folder / ".stdout", STDOUT_FILENO);
+  redirect_stderr();
+  execv(program.c_str(), argv.data());
+  _exit(127);
+}
+
+int exit_code_of(pid_t child) {
   int status = 0;
   waitpid(child, &status, 0);
-  const int code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
-  return {code, read_file(out), read_file(err)};
+  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+}  // namespace
+
+Finished run_diaphane(const fs::path& folder, const std::vector<std::string>& arguments) {
+  const fs::path err = folder / ".stderr";
+  const int code = exit_code_of(start_diaphane(folder, arguments, [&] { redirect(err, STDERR_FILENO); }));
+  return {code, read_file(folder / ".stdout"), read_file(err)};
+}
+
+Finished run_diaphane_on_terminal(const fs::path& folder, const std::vector<std::string>& arguments) {
+  int terminal = -1;
+  int program_side = -1;
+  if (openpty(&terminal, &program_side, nullptr, nullptr, nullptr) != 0) return {};
+  const pid_t child = start_diaphane(folder, arguments, [&] { dup2(program_side, STDERR_FILENO); });
+  close(program_side);
+  // Reading fails once the program, which holds the other side, has ended.
+  std::string err;
+  char bytes[4096];
+  for (ssize_t count; (count = read(terminal, bytes, sizeof bytes)) > 0;) err.append(bytes, static_cast<size_t>(count));
+  close(terminal);
+  return {exit_code_of(child), read_file(folder / ".stdout"), err};
 }
 
 std::string read_file(const fs::path& path) {

@@ -16,6 +16,9 @@ struct Finished {
 /// Runs build/bin/diaphane in `folder` to its end.
 Finished run_diaphane(const std::filesystem::path& folder, const std::vector<std::string>& arguments);
 
+/// The same, with a terminal in the place of stderr: `err` is what it was sent.
+Finished run_diaphane_on_terminal(const std::filesystem::path& folder, const std::vector<std::string>& arguments);
+
 std::string read_file(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, const std::string& text);
 

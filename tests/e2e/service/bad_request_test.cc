@@ -137,6 +137,8 @@ TEST_F(BadRequestTest, RefusesSettings) {
                        {"settings.paper.face_size_px", "4096", "16..2048"});
   expect_frame_refused([](auto& r) { r.mutable_settings()->mutable_paper()->set_global_gain(-1); },
                        {"settings.paper.global_gain", "-1", "0..1000"});
+  expect_frame_refused([](auto& r) { r.mutable_settings()->set_shadows(static_cast<v1::Shadows>(3)); },
+                       {"settings.shadows", "3", "SHADOWS_ON"});
   expect_frame_refused([](auto& r) { r.mutable_settings()->set_exposure_ev(kNan); },
                        {"settings.exposure_ev", "nan", "-32..32"});
 }
@@ -146,6 +148,38 @@ TEST_F(BadRequestTest, RefusesEncodings) {
                        {"encoding.format", "9", "IMAGE_FORMAT_PNG"});
   expect_frame_refused([](auto& r) { r.mutable_encoding()->set_jpeg_quality(101); },
                        {"encoding.jpeg_quality", "101", "1..100"});
+}
+
+TEST_F(BadRequestTest, RefusesChannels) {
+  expect_frame_refused([](auto& r) { r.mutable_encoding()->add_channels(v1::CHANNEL_DEPTH); },
+                       {"encoding.channels", "1", "none, but of IMAGE_FORMAT_EXR"});
+  const auto exr = [](std::vector<int> channels) {
+    return [=](v1::RenderFrameRequest& r) {
+      r.mutable_encoding()->set_format(v1::IMAGE_FORMAT_EXR);
+      for (const int channel : channels) r.mutable_encoding()->add_channels(static_cast<v1::Channel>(channel));
+    };
+  };
+  expect_frame_refused(exr({v1::CHANNEL_DEPTH, v1::CHANNEL_NORMAL, v1::CHANNEL_DEPTH}),
+                       {"encoding.channels[2]", "CHANNEL_DEPTH", "given once"});
+  expect_frame_refused(exr({0}), {"encoding.channels[0]", "0", "CHANNEL_IRRADIANCE"});
+  expect_frame_refused(exr({v1::CHANNEL_POSITION, 99}), {"encoding.channels[1]", "99", "CHANNEL_POSITION"});
+  expect_frame_refused(
+      [&](auto& r) {
+        exr({v1::CHANNEL_DEPTH})(r);
+        r.mutable_size()->set_width_px(1024);
+        r.mutable_size()->set_height_px(1025);
+      },
+      {"size", "1024x1025", "at most 1048576 pixels"});
+}
+
+TEST_F(BadRequestTest, RefusesStreamsAsItRefusesFrames) {
+  v1::RenderFrameRequest request = frame_of(scene_);
+  request.mutable_camera()->set_fov_y_deg(180);
+  Context context;
+  v1::RenderFrameWithProgressResponse part;
+  const auto reader = frames_->RenderFrameWithProgress(&context, request);
+  EXPECT_FALSE(reader->Read(&part));
+  expect_refused(reader->Finish(), {"camera.fov_y_deg", "180", "1..170"});
 }
 
 TEST_F(BadRequestTest, RefusesScenesThatCannotBeDrawn) {

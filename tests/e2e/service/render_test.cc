@@ -8,6 +8,8 @@
 namespace diaphane::e2e {
 namespace {
 
+using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 class RenderTest : public ServiceTest {
@@ -47,6 +49,34 @@ TEST_F(RenderTest, EncodesAsAsked) {
   request.mutable_encoding()->set_format(v1::IMAGE_FORMAT_EXR);
   ASSERT_TRUE(render(request, &response).ok());
   EXPECT_THAT(response.image(), StartsWith("v/1\x01"));
+}
+
+TEST_F(RenderTest, EncodesTheChannelsThatWereAskedFor) {
+  v1::RenderFrameRequest request = frame_of(scene_);
+  request.mutable_encoding()->set_format(v1::IMAGE_FORMAT_EXR);
+  v1::RenderFrameResponse plain;
+  ASSERT_TRUE(render(request, &plain).ok());
+  EXPECT_THAT(plain.image(), Not(HasSubstr("N.X")));
+  request.mutable_encoding()->add_channels(v1::CHANNEL_NORMAL);
+  request.mutable_encoding()->add_channels(v1::CHANNEL_IRRADIANCE);
+  v1::RenderFrameResponse response;
+  ASSERT_TRUE(render(request, &response).ok());
+  for (const char* name : {"N.X", "N.Y", "N.Z", "irradiance.R", "irradiance.G", "irradiance.B"}) {
+    EXPECT_THAT(response.image(), HasSubstr(name));
+  }
+}
+
+TEST_F(RenderTest, TakesShadowsWithEveryTechnique) {
+  v1::RenderFrameRequest request = frame_of(scene_);
+  for (const v1::Technique technique :
+       {v1::TECHNIQUE_PAPER, v1::TECHNIQUE_LAMBERT, v1::TECHNIQUE_INTEGRAL, v1::TECHNIQUE_REFERENCE}) {
+    request.mutable_settings()->set_technique(technique);
+    for (const v1::Shadows shadows : {v1::SHADOWS_ON, v1::SHADOWS_OFF, v1::SHADOWS_UNSPECIFIED}) {
+      request.mutable_settings()->set_shadows(shadows);
+      v1::RenderFrameResponse response;
+      EXPECT_TRUE(render(request, &response).ok()) << technique << " " << shadows;
+    }
+  }
 }
 
 TEST_F(RenderTest, SendsFramesLargerThanGrpcsDefault) {

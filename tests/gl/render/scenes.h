@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "glm/geometric.hpp"
 #include "optics/presets.h"
 #include "render/frame.h"
 
@@ -76,6 +77,17 @@ inline std::shared_ptr<scene::SceneSnapshot> make_scene(Triangles triangles, std
   mesh->topology = *geometry::build_topology(std::move(triangles.positions), std::move(triangles.triangles));
   scene->meshes.push_back(std::move(mesh));
   return scene;
+}
+
+/// A ball about the origin with its exact normals, in scene units.
+inline std::shared_ptr<scene::SceneSnapshot> make_ball_scene(float radius, uint32_t cells, std::string_view preset) {
+  Triangles ball = make_box({1, 1, 1}, cells);
+  std::vector<glm::vec3> normals;
+  for (glm::vec3& p : ball.positions) {
+    normals.push_back(glm::normalize(p));
+    p = radius * normals.back();
+  }
+  return make_scene(std::move(ball), preset, std::move(normals));
 }
 
 inline void add_point_light(scene::SceneSnapshot& scene, const glm::vec3& position, float intensity_w_sr) {

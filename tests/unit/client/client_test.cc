@@ -129,6 +129,36 @@ TEST_F(ClientTest, ReceivesFramesPastFourMegabytes) {
   EXPECT_EQ(frame->image, server_.renders.image);
 }
 
+TEST_F(ClientTest, TellsTheProgressOfAFrame) {
+  server_.renders.image = "bytes";
+  server_.renders.shares = {0.25f, 0.5f, 1};
+  const Scene scene = connect().create_scene().value();
+  std::vector<double> shares;
+  const RenderOptions options{.format = ImageFormat::kExr, .channels = {Channel::kDepth, Channel::kIrradiance}};
+  const auto frame = scene.render(options, [&](double share) { shares.push_back(share); });
+  ASSERT_TRUE(frame.ok()) << frame.status();
+  EXPECT_EQ(frame->image, "bytes");
+  EXPECT_THAT(shares, testing::ElementsAre(0.25, 0.5, 1));
+  const auto& channels = server_.renders.last_request.encoding().channels();
+  EXPECT_THAT(channels, testing::ElementsAre(v1::CHANNEL_DEPTH, v1::CHANNEL_IRRADIANCE));
+}
+
+TEST_F(ClientTest, DoesNotTakeAStreamWithoutAFrameForOne) {
+  server_.renders.shares = {1};
+  server_.renders.forget_the_frame = true;
+  const Scene scene = connect().create_scene().value();
+  EXPECT_EQ(scene.render({}, [](double) {}).status().code(), absl::StatusCode::kInternal);
+}
+
+TEST_F(ClientTest, StopCancelsAFrameThatTellsItsProgress) {
+  server_.renders.shares = {0.25f};
+  server_.renders.wait_for_cancellation = true;
+  std::stop_source stop;
+  const Scene scene = connect({.stop = stop.get_token()}).create_scene().value();
+  const auto frame = scene.render({}, [&](double) { stop.request_stop(); });
+  EXPECT_EQ(frame.status().code(), absl::StatusCode::kCancelled);
+}
+
 TEST_F(ClientTest, StopCancelsTheCallInFlight) {
   server_.renders.wait_for_cancellation = true;
   std::stop_source stop;

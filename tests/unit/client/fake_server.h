@@ -83,11 +83,28 @@ class FakeRenders final : public v1::RenderService::Service {
  public:
   std::string image;
   bool wait_for_cancellation = false;
+  std::vector<float> shares;  ///< told before a frame
+  bool forget_the_frame = false;
+  v1::RenderFrameRequest last_request;
 
   grpc::Status RenderFrame(grpc::ServerContext* context, const v1::RenderFrameRequest*,
                            v1::RenderFrameResponse* response) override {
     while (wait_for_cancellation && !context->IsCancelled()) std::this_thread::yield();
     response->set_image(image);
+    return grpc::Status::OK;
+  }
+
+  grpc::Status RenderFrameWithProgress(grpc::ServerContext* context, const v1::RenderFrameRequest* request,
+                                       grpc::ServerWriter<v1::RenderFrameWithProgressResponse>* writer) override {
+    last_request = *request;
+    v1::RenderFrameWithProgressResponse part;
+    for (const float share : shares) {
+      part.set_progress(share);
+      writer->Write(part);
+    }
+    while (wait_for_cancellation && !context->IsCancelled()) std::this_thread::yield();
+    part.mutable_frame()->set_image(image);
+    if (!forget_the_frame) writer->Write(part);
     return grpc::Status::OK;
   }
 };

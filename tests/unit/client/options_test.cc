@@ -77,6 +77,14 @@ TEST_F(RenderOptionsTest, FillTheArguments) {
   EXPECT_EQ(arguments_.height_mm, 20);
 }
 
+TEST(ChannelLists, NameEachChannelOnce) {
+  EXPECT_THAT(parse_channels("depth,irradiance").value(), testing::ElementsAre(Channel::kDepth, Channel::kIrradiance));
+  EXPECT_EQ(parse_channels(channel_names())->size(), 5);
+  for (const char* text : {"", "depth,", ",depth", "depth,depth", "Depth", "depth irradiance", "albedo"}) {
+    EXPECT_EQ(parse_channels(text), std::nullopt) << text;
+  }
+}
+
 TEST_F(RenderOptionsTest, TakeMeshesAfterARepeatableOption) {
   parse({"--point-light", "0,0,1,2,3,4", "a.ply", "-o", "out.png"});
   EXPECT_THAT(arguments_.meshes, testing::ElementsAre("a.ply"));
@@ -91,6 +99,8 @@ TEST_F(RenderOptionsTest, NameTheFlagAndTheValue) {
   EXPECT_THAT(complaint({"a.ply", "-o", "o.png", "--technique", "magic"}),
               AllOf(HasSubstr("--technique"), HasSubstr("integral | paper | reference | lambert")));
   EXPECT_THAT(complaint({"a.ply", "-o", "o.png", "--height-mm", "0"}), HasSubstr("--height-mm"));
+  EXPECT_THAT(complaint({"a.ply", "-o", "o.exr", "--aov", "depth,colour"}),
+              AllOf(HasSubstr("--aov"), HasSubstr("irradiance,radiosity,normal,depth,position")));
 }
 
 TEST_F(RenderOptionsTest, RefuseWhatContradictsItself) {

@@ -84,6 +84,19 @@ TEST(EncodeExr, KeepsTheNamesOfOtherChannels) {
   EXPECT_THAT(decode(*encode_exr(image), "a.exr").spec.channelnames, ElementsAre("R", "G", "B", "A", "Z"));
 }
 
+TEST(EncodeExr, KeepsLayersAndInfinity) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  const base::ImageF image{
+      1, 1, {"R", "G", "B", "A", "N.X", "N.Y", "N.Z", "Z", "irradiance.R"}, {1, 2, 3, 0, -1, 0, 0.5f, infinity, 7}};
+  const Decoded decoded = decode(*encode_exr(image), "a.exr");
+  const auto value = [&](const std::string& name) {
+    const int index = decoded.spec.channelindex(name);
+    return index < 0 ? std::numeric_limits<float>::quiet_NaN() : decoded.values[static_cast<size_t>(index)];
+  };
+  EXPECT_EQ(decoded.spec.format, OIIO::TypeFloat);
+  for (size_t i = 0; i < image.channels.size(); ++i) EXPECT_EQ(value(image.channels[i]), image.values[i]);
+}
+
 TEST(Encode, WritesNothingButTheImage) {
   const base::ImageF linear{1, 1, {"R", "G", "B", "A"}, {1, 2, 3, 1}};
   for (const std::string& bytes :

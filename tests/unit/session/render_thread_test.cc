@@ -171,6 +171,35 @@ TEST_F(RenderThreadTest, EndsAJobThatIsBeingDrawnAtItsDeadline) {
   EXPECT_EQ(drawn.get().status().code(), absl::StatusCode::kDeadlineExceeded);
 }
 
+TEST_F(RenderThreadTest, EndsAJobThatIsDrawnForTooLong) {
+  control_->hold();
+  Answer drawn, next;
+  FrameTask slow = task(drawn);
+  slow.time_limit = absl::Milliseconds(20);
+  slow.limit_field = "reference_seconds";
+  ASSERT_TRUE(thread_->submit(std::move(slow)).ok());
+  const absl::Status over = drawn.get().status();
+  EXPECT_EQ(over.code(), absl::StatusCode::kDeadlineExceeded);
+  EXPECT_EQ(std::string(over.message()), "reference_seconds: must be at most 0.02, got more");
+  control_->release();
+  ASSERT_TRUE(thread_->submit(task(next)).ok());
+  EXPECT_TRUE(next.get().ok());
+}
+
+TEST_F(RenderThreadTest, CountsATimeLimitFromWhenTheRendererBegins) {
+  Answer drawn, waiting, hurried;
+  hold_one(drawn);
+  FrameTask limited = task(waiting);
+  limited.time_limit = absl::Milliseconds(1);
+  ASSERT_TRUE(thread_->submit(std::move(limited)).ok());
+  // By the time this one's deadline has passed, so would the other's limit have, if it ran.
+  FrameTask late = task(hurried);
+  late.deadline = absl::Now() + absl::Milliseconds(20);
+  ASSERT_TRUE(thread_->submit(std::move(late)).ok());
+  EXPECT_EQ(hurried.get().status().code(), absl::StatusCode::kDeadlineExceeded);
+  EXPECT_FALSE(answered(waiting));
+}
+
 TEST_F(RenderThreadTest, SurvivesARendererThatRunsOutOfMemory) {
   control_->run_out_of_memory();
   Answer failed, next;

@@ -111,7 +111,8 @@ TEST(Shadows, ALightInsideAHollowBodyLightsItsWallsAlone) {
   for (size_t t = 0; t < share.size(); ++t) {
     const glm::uvec3& i = cup.triangles[t];
     const glm::vec3 centre = (cup.positions_mm[i.x] + cup.positions_mm[i.y] + cup.positions_mm[i.z]) / 3.0f;
-    if (glm::length(glm::vec2(centre)) > 6.9f) EXPECT_EQ(share[t], 0.0f) << "outer wall";
+    if (glm::length(glm::vec2(centre)) <= 6.9f) continue;
+    EXPECT_EQ(share[t], 0.0f) << "outer wall";
   }
   EXPECT_GT(mean(share), 0.2);
 }

@@ -93,10 +93,10 @@ void compare(const Frame& before, const Frame& after, std::vector<float>& flicke
   }
 }
 
-/// Of sorted values, the share below kBar.
+/// Of sorted values, at least one, the share below kBar.
 double share_below(const std::vector<float>& sorted) {
   const auto below = std::lower_bound(sorted.begin(), sorted.end(), kBar) - sorted.begin();
-  return static_cast<double>(below) / static_cast<double>(std::max<size_t>(sorted.size(), 1));
+  return static_cast<double>(below) / static_cast<double>(sorted.size());
 }
 
 int run(const Settings& settings) {
@@ -144,10 +144,11 @@ int run(const Settings& settings) {
       100 * quantile(0.999), 100 * flicker.back());
   json quarters = json::array();
   for (std::vector<float>& quarter : of_quarter) {
+    if (quarter.empty()) continue;
     std::sort(quarter.begin(), quarter.end());
     quarters.push_back(share_below(quarter));
-    std::printf("quarter %zu of the morph: below %.0f %%: %.3f %%\n", quarters.size(), 100 * kBar,
-                100 * share_below(quarter));
+    std::printf("quarter %d of the morph: below %.0f %%: %.3f %%\n", static_cast<int>(&quarter - of_quarter.data()) + 1,
+                100 * kBar, 100 * share_below(quarter));
   }
   if (!settings.json_path.empty()) {
     std::ofstream(settings.json_path) << json{{"frames", settings.frames},       {"size_px", settings.size_px},

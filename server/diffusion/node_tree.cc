@@ -220,19 +220,19 @@ void for_blocks_of_top(const NodeTree& tree, const Visit& visit) {
 uint32_t first_leaf(uint32_t chunk) { return chunk * (NodeTree::kChunkSlots / 16); }
 uint32_t end_leaf(const NodeTree& tree, uint32_t chunk) { return std::min(first_leaf(chunk + 1), tree.leaf_count()); }
 
-constexpr int kKeyBias = (127 - 32) << 1;
+constexpr int kKeyBias = (127 - 32) << 2;
 
 }  // namespace
 
 uint8_t spacing_key(float spacing2_mm2) {
-  // The exponent and the mantissa's top bit.
-  const auto half_octave = static_cast<int>(std::bit_cast<uint32_t>(std::max(spacing2_mm2, 0.0f)) >> 22);
-  return static_cast<uint8_t>(std::clamp(half_octave - kKeyBias, 0, static_cast<int>(kSpacingKeys) - 1));
+  // The exponent and the mantissa's top two bits.
+  const auto step = static_cast<int>(std::bit_cast<uint32_t>(std::max(spacing2_mm2, 0.0f)) >> 21);
+  return static_cast<uint8_t>(std::clamp(step - kKeyBias, 0, static_cast<int>(kSpacingKeys) - 1));
 }
 
 float spacing_of_key(uint8_t key) {
-  const auto low = std::bit_cast<float>(static_cast<uint32_t>(key + kKeyBias) << 22);
-  const auto high = std::bit_cast<float>(static_cast<uint32_t>(key + kKeyBias + 1) << 22);
+  const auto low = std::bit_cast<float>(static_cast<uint32_t>(key + kKeyBias) << 21);
+  const auto high = std::bit_cast<float>(static_cast<uint32_t>(key + kKeyBias + 1) << 21);
   return std::sqrt(std::sqrt(low * high));
 }
 

@@ -98,8 +98,8 @@ class NodeTree {
   std::vector<std::vector<float>> blocks_;  ///< by level; level 0 has none
 };
 
-/// Half octaves of s², s = √(½(mean + max area)) of a leaf's vertices: one kernel table for each.
-constexpr uint32_t kSpacingKeys = 128;
+/// Quarter octaves of s², s = √(½(mean + max area)) of a leaf's vertices: one kernel table for each.
+constexpr uint32_t kSpacingKeys = 256;
 uint8_t spacing_key(float spacing2_mm2);
 /// The middle of a key's range, mm.
 float spacing_of_key(uint8_t key);

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "absl/status/status.h"
+#include "diffusion/dipole_integral.h"
 #include "diffusion/surface_topology.h"
 #include "geometry/subdivide.h"
 #include "optics/dipole.h"
@@ -15,13 +16,13 @@
 
 namespace diaphane::render {
 
-/// Splits and lays out once per topology, size and material (see docs/integral.md), and carries every pose over. One
+/// Splits and lays out once per topology, size, material and quality (see docs/integral.md), and carries every pose over. One
 /// thread.
 class RefinedMesh {
  public:
   /// Takes the normals that the client gave; else leaves them to whoever calls fill_normals(). Stage: refine.
   absl::Status update(const scene::Mesh& mesh, PlacedMesh& placed, const optics::Coefficients& material,
-                      StageClock& clock);
+                      diffusion::Quality quality, StageClock& clock);
 
   const std::shared_ptr<const diffusion::SurfaceTopology>& surface() const { return ordered_.surface; }
   const std::shared_ptr<const geometry::MeshTopology>& topology() const { return ordered_.surface->mesh; }

@@ -94,7 +94,7 @@ Samples measure_integral(const testing::Cell& cell, const AccuracySettings& sett
   const float z = smallest(diffusion::smooth_distance_mm(optics::make_dipole(cell.material)));
   const Mesh fine = settings.spacings.size() == 2
                         ? subdivided(cell.mesh, settings.spacings[0] * z, settings.spacings[1] * z)
-                        : testing::as_served(cell.mesh, cell.material);
+                        : testing::as_served(cell.mesh, cell.material, settings.quality);
   diffusion::DipoleIntegral integral(
       diffusion::build_surface_topology(*geometry::build_topology(fine.positions_mm, fine.triangles)));
   const diffusion::Openings openings = settings.openings.size() == 2

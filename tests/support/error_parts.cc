@@ -14,13 +14,13 @@ constexpr diffusion::Openings kAllOpen{0.06f, 0.1f};
 
 }  // namespace
 
-Mesh as_served(const Mesh& mesh, const optics::Coefficients& material) {
+Mesh as_served(const Mesh& mesh, const optics::Coefficients& material, diffusion::Quality quality) {
   const auto scene = make_scene(mesh, material, {});
   render::StageClock clock;
   render::PlacedMesh placed;
   placed.update(*scene->meshes.front(), 1, clock);
   render::RefinedMesh refined;
-  if (const absl::Status status = refined.update(*scene->meshes.front(), placed, material, clock); !status.ok()) {
+  if (const absl::Status status = refined.update(*scene->meshes.front(), placed, material, quality, clock); !status.ok()) {
     throw std::runtime_error(std::string(status.message()));
   }
   return {refined.shape().positions_mm, refined.shape().normals, refined.topology()->triangles};
@@ -41,7 +41,7 @@ std::vector<glm::vec3> integral_radiosity(diffusion::DipoleIntegral& integral, c
 
 std::vector<ErrorParts> error_parts(const Cell& cell, diffusion::Quality quality, std::span<const glm::vec3> points_mm,
                                     std::span<const glm::vec3> normals) {
-  const Mesh fine = as_served(cell.mesh, cell.material);
+  const Mesh fine = as_served(cell.mesh, cell.material, quality);
   diffusion::DipoleIntegral integral(
       diffusion::build_surface_topology(*geometry::build_topology(fine.positions_mm, fine.triangles)));
   const auto grouped = integral_radiosity(integral, fine, cell, diffusion::openings_of(quality, cell.material));

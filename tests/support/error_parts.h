@@ -10,7 +10,7 @@
 namespace diaphane::testing {
 
 /// The mesh as the server splits it for a material.
-Mesh as_served(const Mesh& mesh, const optics::Coefficients& material);
+Mesh as_served(const Mesh& mesh, const optics::Coefficients& material, diffusion::Quality quality);
 
 /// Radiosity at the vertices of `mesh`, which may be a finer one than the cell's, by `integral` (made of its topology).
 std::vector<glm::vec3> integral_radiosity(diffusion::DipoleIntegral& integral, const Mesh& mesh, const Cell& cell,

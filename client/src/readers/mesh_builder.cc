@@ -45,7 +45,8 @@ absl::Status MeshBuilder::repeat_vertex(uint32_t vertex) {
   if (++vertices_ > source_.limits.max_vertices) {
     return source_.over_limit("vertices", vertices_, source_.limits.max_vertices);
   }
-  mesh_.positions.push_back(Vec3(mesh_.positions[vertex]));
+  const Vec3 position = mesh_.positions[vertex];
+  mesh_.positions.push_back(position);
   return absl::OkStatus();
 }
 

@@ -45,8 +45,7 @@ absl::Status MeshBuilder::repeat_vertex(uint32_t vertex) {
   if (++vertices_ > source_.limits.max_vertices) {
     return source_.over_limit("vertices", vertices_, source_.limits.max_vertices);
   }
-  const Vec3 position = mesh_.positions[vertex];
-  mesh_.positions.push_back(position);
+  mesh_.positions.push_back(Vec3(mesh_.positions[vertex]));
   return absl::OkStatus();
 }
 

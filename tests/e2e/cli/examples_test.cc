@@ -1,10 +1,13 @@
 // The examples do what they say.
+#include <OpenImageIO/imageio.h>
+
 #include "fixture.h"
 
 namespace diaphane::testing_support {
 namespace {
 
 using testing::HasSubstr;
+using testing::IsSupersetOf;
 using testing::StartsWith;
 
 constexpr char kPng[] = "\x89PNG";
@@ -46,6 +49,13 @@ TEST_F(Examples, LightAndMaterialChangeThePicture) {
   EXPECT_THAT(picture("before.exr"), StartsWith(kExr));
   EXPECT_THAT(picture("after.exr"), StartsWith(kExr));
   EXPECT_NE(picture("before.exr"), picture("after.exr"));
+}
+
+TEST_F(Examples, SaveChannelsKeepsThemBesideTheColour) {
+  expect_success("example_save_channels", {"cube.obj", "cube.exr"});
+  const auto input = OIIO::ImageInput::open((folder_ / "cube.exr").string());
+  ASSERT_NE(input, nullptr) << OIIO::geterror();
+  EXPECT_THAT(input->spec().channelnames, IsSupersetOf({"R", "irradiance.R", "radiosity.G", "N.X", "Z"}));
 }
 
 }  // namespace

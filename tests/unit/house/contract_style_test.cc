@@ -40,6 +40,9 @@ std::string upper_snake(const std::string& name) {
   return result;
 }
 
+// GetThingRequest -> GetThing
+std::string call_of(const std::string& request) { return request.substr(0, request.rfind("Request")); }
+
 template <typename Thing>
 bool has_comment(const Thing& thing) {
   google::protobuf::SourceLocation location;
@@ -79,7 +82,10 @@ class Judge {
       const MethodDescriptor& method = *service.method(i);
       expect(is_pascal(method.name()), method.full_name(), "is PascalCase");
       expect(has_comment(method), method.full_name(), "has a comment");
-      expect(method.input_type()->name() == method.name() + "Request", method.full_name(), "takes a MethodRequest");
+      // A variant, such as RenderFrameWithProgress, takes what its call does.
+      const std::string& request = method.input_type()->name();
+      expect(request.ends_with("Request") && method.name().starts_with(call_of(request)), method.full_name(),
+             "takes a MethodRequest");
       // A resource's own verbs may answer with the resource, or with nothing.
       const std::string& answer = method.output_type()->name();
       expect(answer.ends_with("Response") || answer == "Empty" || method.name().ends_with(answer), method.full_name(),

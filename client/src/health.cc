@@ -32,6 +32,9 @@ absl::Status check_health(std::string_view address, const ClientOptions& options
   const absl::Status status =
       internal::run_with_retries({options.connect_timeout, options.connect_timeout, options.stop},
                                  [&](grpc::ClientContext& context) { return check(stub, context, answer); });
+  if (absl::IsUnimplemented(status)) {
+    return absl::FailedPreconditionError(fmt::format("server {}: tells no health", address));
+  }
   if (!status.ok()) {
     return absl::Status(status.code(), fmt::format("server {}: {}", address, std::string(status.message())));
   }

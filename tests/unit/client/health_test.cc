@@ -42,7 +42,7 @@ TEST_F(HealthTest, TellsThatTheServerDoesNotServe) {
 
 TEST_F(HealthTest, TellsThatTheServerHasNoHealth) {
   start(false);
-  EXPECT_EQ(check_health(address_).code(), absl::StatusCode::kUnimplemented);
+  EXPECT_EQ(check_health(address_).code(), absl::StatusCode::kFailedPrecondition);
 }
 
 TEST_F(HealthTest, TellsThatNothingAnswers) {

@@ -20,6 +20,7 @@ struct Commands {
   CLI::App* render = nullptr;
   CLI::App* materials = nullptr;
   CLI::App* info = nullptr;
+  CLI::App* health = nullptr;
   CLI::App* scene = nullptr;
   CLI::App* scene_ls = nullptr;
   CLI::App* scene_show = nullptr;
@@ -37,24 +38,27 @@ struct Commands {
     add_render_options(*render, render_arguments);
     materials = app.add_subcommand("materials", "List the material presets");
     info = app.add_subcommand("info", "Say what the server is, and what it allows");
+    health = app.add_subcommand("health", "Say whether a running server serves; exits with 3 if not");
     scene = app.add_subcommand("scene", "Look after the scenes of a running server");
     scene->require_subcommand(0, 1);
     scene_ls = scene->add_subcommand("ls", "List them");
     scene_show = scene->add_subcommand("show", "Show one and all that is in it");
     scene_rm = scene->add_subcommand("rm", "Delete one");
     for (CLI::App* command : {scene_show, scene_rm}) command->add_option("ID", scene_id)->required();
-    for (CLI::App* command : {render, materials, info, scene, scene_ls, scene_show, scene_rm}) command->fallthrough();
+    for (CLI::App* command : {render, materials, info, health, scene, scene_ls, scene_show, scene_rm})
+      command->fallthrough();
   }
 
   absl::Status run() const {
     if (render->parsed()) return run_render(global, render_arguments);
     if (materials->parsed()) return run_materials(global);
     if (info->parsed()) return run_info(global);
+    if (health->parsed()) return run_health(global);
     if (scene_ls->parsed()) return run_scene_ls(global);
     if (scene_show->parsed()) return run_scene_show(global, scene_id);
     if (scene_rm->parsed()) return run_scene_rm(global, scene_id);
     if (scene->parsed()) return usage_error("scene", "give one of ls, show ID, rm ID");
-    return usage_error("COMMAND", "give one of render, materials, info, scene; see diaphane --help");
+    return usage_error("COMMAND", "give one of render, materials, info, health, scene; see diaphane --help");
   }
 };
 

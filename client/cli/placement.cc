@@ -36,7 +36,9 @@ std::optional<double> FileUnits::known() const {
 absl::StatusOr<Unit> choose_unit(const RenderArguments& arguments, const FileUnits& units,
                                  std::span<const MeshData> meshes, const Vec3& up) {
   if (arguments.millimetres_per_unit) return Unit{*arguments.millimetres_per_unit};
-  if (!arguments.height_mm && units.known()) return Unit{*units.known()};
+  if (!arguments.height_mm) {
+    if (const std::optional<double> known = units.known()) return Unit{*known};
+  }
 
   const absl::StatusOr<double> height = extent_along(meshes, up);
   if (!height.ok()) return usage_error("--up", std::string(height.status().message()));

@@ -43,7 +43,8 @@ absl::Status read_meshes(const fs::path& path, const Matrix& scene_from_file, si
 }
 
 Material material_of(const RenderArguments& arguments) {
-  if (!arguments.absorption_mm) return {arguments.preset.value_or(kDefaultPreset)};
+  // The one needs the other on the command line.
+  if (!arguments.absorption_mm || !arguments.reduced_scattering_mm) return {arguments.preset.value_or(kDefaultPreset)};
   Coefficients coefficients{*arguments.absorption_mm, *arguments.reduced_scattering_mm};
   if (arguments.refractive_index) coefficients.refractive_index = *arguments.refractive_index;
   return {coefficients};

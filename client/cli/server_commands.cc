@@ -85,6 +85,19 @@ absl::Status run_info(const GlobalOptions& global) {
   return absl::OkStatus();
 }
 
+absl::Status run_health(const GlobalOptions& global) {
+  if (global.server.empty()) return usage_error("--server", "must be given: a private server serves once it is there");
+  const absl::Status status = check_health(global.server, {.stop = global.stop});
+  if (absl::IsInvalidArgument(status)) return usage_error("--server", std::string(status.message()));
+  if (!status.ok()) return with_exit_code(status, kExitUnavailable);
+  if (global.json) {
+    print_json({{"serving", true}});
+  } else {
+    fmt::print("serving\n");
+  }
+  return absl::OkStatus();
+}
+
 absl::Status run_scene_ls(const GlobalOptions& global) {
   const absl::StatusOr<Session> session = open_given_server(global);
   if (!session.ok()) return session.status();

@@ -1,4 +1,4 @@
-// diaphane materials, info and scene: what a server knows.
+// diaphane materials, info, health and scene: what a server knows.
 #pragma once
 
 #include <string>
@@ -12,7 +12,8 @@ namespace diaphane::cli {
 absl::Status run_materials(const GlobalOptions& global);
 absl::Status run_info(const GlobalOptions& global);
 
-/// These need a running server: a private one has no scenes. `scene` is scenes/{scene} or {scene}.
+/// These need a running server: a private one serves, and has no scenes. `scene` is scenes/{scene} or {scene}.
+absl::Status run_health(const GlobalOptions& global);
 absl::Status run_scene_ls(const GlobalOptions& global);
 absl::Status run_scene_show(const GlobalOptions& global, const std::string& scene);
 absl::Status run_scene_rm(const GlobalOptions& global, const std::string& scene);

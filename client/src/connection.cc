@@ -41,8 +41,12 @@ absl::Status Connection::check_address(std::string_view address) {
   return absl::OkStatus();
 }
 
+std::shared_ptr<grpc::Channel> make_channel(const std::string& address) {
+  return grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), channel_arguments());
+}
+
 Connection::Connection(const std::string& address, ClientOptions options) : options_(std::move(options)) {
-  const auto channel = grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), channel_arguments());
+  const auto channel = make_channel(address);
   scene_service_ = v1::SceneService::NewStub(channel);
   render_service_ = v1::RenderService::NewStub(channel);
   server_service_ = v1::ServerService::NewStub(channel);

@@ -20,6 +20,9 @@ using SceneStub = v1::SceneService::Stub;
 using RenderStub = v1::RenderService::Stub;
 using ServerStub = v1::ServerService::Stub;
 
+/// A plain-text channel to what Client::connect takes, without a proxy and without gRPC's own retries.
+std::shared_ptr<grpc::Channel> make_channel(const std::string& address);
+
 /// Thread-safe.
 class Connection {
  public:

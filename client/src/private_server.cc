@@ -2,9 +2,12 @@
 
 #include <stdlib.h>
 #include <sys/un.h>
+#include <unistd.h>
 
+#include <sstream>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "child_process.h"
 #include "fmt/format.h"
@@ -50,14 +53,27 @@ class TemporaryDirectory {
   std::string path_;
 };
 
-absl::StatusOr<fs::path> find_program(const PrivateServerOptions& options) {
+bool is_program(const fs::path& path) {
   std::error_code code;
-  fs::path program = options.program;
-  if (program.empty()) program = fs::read_symlink("/proc/self/exe", code).parent_path() / kProgram;
-  if (code || !fs::is_regular_file(program, code)) {
-    return absl::NotFoundError(fmt::format("{}: no such program", program.string()));
+  return fs::is_regular_file(path, code) && access(path.c_str(), X_OK) == 0;
+}
+
+absl::StatusOr<fs::path> find_program(const PrivateServerOptions& options) {
+  if (!options.program.empty()) {
+    if (is_program(options.program)) return options.program;
+    return absl::NotFoundError(fmt::format("{}: no such program", options.program.string()));
   }
-  return program;
+  std::error_code code;
+  std::vector<fs::path> folders = {fs::read_symlink("/proc/self/exe", code).parent_path()};
+  const char* path = getenv("PATH");
+  std::istringstream rest(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(rest, folder, ':');) folders.emplace_back(folder);
+  for (const fs::path& folder : folders) {
+    // An empty folder would be the working directory: a program from there is nobody's wish.
+    if (!folder.empty() && is_program(folder / kProgram)) return folder / kProgram;
+  }
+  return absl::NotFoundError(
+      fmt::format("{}: no such program, neither in {} nor on PATH", kProgram, folders[0].string()));
 }
 
 // The address that the server says it listens on.

@@ -123,8 +123,7 @@ void DipoleIntegral::update_positions(std::span<const glm::vec3> positions_mm, s
       const uint32_t vertex = surface.vertex_of_slot[slot];
       const glm::vec3& position = positions_mm[vertex];
       s.tree.places[slot] = {position, sum.area_mm2 / 3, sum.area_vector_mm2 / 3.0f};
-      s.tree.sources[slot].position_mm =
-          sum.area_mm2 > 0 ? 0.5f * (position + sum.weighted / sum.area_mm2) : position;
+      s.tree.sources[slot].position_mm = sum.area_mm2 > 0 ? 0.5f * (position + sum.weighted / sum.area_mm2) : position;
       if (normals.empty()) continue;
       const float length = glm::length(sum.area_vector_mm2);
       normals[vertex] = length > 0 ? sum.area_vector_mm2 / length : glm::vec3(0, 0, 1);

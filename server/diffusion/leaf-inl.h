@@ -114,8 +114,7 @@ HWY_INLINE void open_nodes(const GatherInput& input, const Receiver& receiver, c
     const Four turn = facing.x * row(kFacingX) + facing.y * row(kFacingY) + facing.z * row(kFacingZ);
     const Four depth = facing.x * dx + facing.y * dy + facing.z * dz;
     const Four spacing2 = max4(zero + own_spacing2, 0.25f * area);
-    const uint32_t opposite =
-        bits_of((turn < cosine_area * area) & (depth * depth > depth2_area2 * spacing2));
+    const uint32_t opposite = bits_of((turn < cosine_area * area) & (depth * depth > depth2_area2 * spacing2));
     const Four gap = max4(zero, sqrt4(dx * dx + dy * dy + dz * dz) - receiver.radius);
     const Four gap2 = gap * gap + z2;
     const uint32_t by_moments = bits_of((row(kSpread2) < opening2 * gap2) & (radius * radius < 1.2f * gap2));

@@ -28,8 +28,8 @@ struct Bounds {
   glm::vec3 highest{0};
 };
 
-/// Applies `scene_from_mesh`, then `millimetres_per_unit`, to the positions; leaves `placed` without normals. Spread over
-/// all cores, as are the others; the same bytes on any number of them.
+/// Applies `scene_from_mesh`, then `millimetres_per_unit`, to the positions; leaves `placed` without normals. Spread
+/// over all cores, as are the others; the same bytes on any number of them.
 void place_positions(const MeshShape& shape, const glm::mat4& scene_from_mesh, double millimetres_per_unit,
                      PlacedShape& placed);
 

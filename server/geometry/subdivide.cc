@@ -38,8 +38,8 @@ class Splitter {
     }
   }
 
-  std::vector<glm::uvec2> parents() && { return std::move(parents_); }
-  std::vector<glm::uvec3> triangles() && { return std::move(triangles_); }
+  std::vector<glm::uvec2> take_parents() { return std::move(parents_); }
+  std::vector<glm::uvec3> take_triangles() { return std::move(triangles_); }
 
  private:
   static uint64_t edge_key(uint32_t a, uint32_t b) { return uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
@@ -136,11 +136,11 @@ absl::StatusOr<SubdividedMesh> subdivide(std::shared_ptr<const MeshTopology> mes
     Splitter splitter(*mesh, positions_mm, creases, bounded);
     if (splitter.run()) {
       SubdividedMesh result;
-      result.parents = std::move(splitter).parents();
+      result.parents = splitter.take_parents();
       if (result.parents.empty()) return SubdividedMesh{std::move(mesh), {}};
       std::vector<glm::vec3> rest = mesh->uploaded_positions;
       extend_positions(result.parents, rest);
-      auto topology = build_topology(std::move(rest), std::move(splitter).triangles());
+      auto topology = build_topology(std::move(rest), splitter.take_triangles());
       if (!topology.ok()) return topology.status();
       result.topology = *std::move(topology);
       return result;

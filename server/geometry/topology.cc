@@ -101,8 +101,8 @@ absl::Status check_finite(std::span<const glm::vec3> values, std::string_view fi
     for (int axis = 0; axis < 3; ++axis) {
       // Written so that NaN fails too.
       if (!(std::abs(values[i][axis]) <= kLargestCoordinate)) {
-        return base::invalid_field(fmt::format("{}[{}].{}", field, i, "xyz"[axis]),
-                                   "finite, within ±1e18", values[i][axis]);
+        return base::invalid_field(fmt::format("{}[{}].{}", field, i, "xyz"[axis]), "finite, within ±1e18",
+                                   values[i][axis]);
       }
     }
   }

@@ -18,18 +18,18 @@ namespace diaphane::geometry {
 struct MeshTopology {
   uint32_t vertex_count = 0;
   uint32_t weld_count = 0;
-  std::vector<glm::uvec3> triangles;         ///< vertex indices, counter-clockwise seen from outside
+  std::vector<glm::uvec3> triangles;          ///< vertex indices, counter-clockwise seen from outside
   std::vector<glm::vec3> uploaded_positions;  ///< [vertex_count], mesh units; the rest pose
-  std::vector<uint32_t> weld_of_vertex;      ///< [vertex_count] → 0..weld_count-1
-  std::vector<uint32_t> first_triangle;      ///< [weld_count + 1] into triangle_of_weld
-  std::vector<uint32_t> triangle_of_weld;    ///< triangles that touch each weld, ascending
+  std::vector<uint32_t> weld_of_vertex;       ///< [vertex_count] → 0..weld_count-1
+  std::vector<uint32_t> first_triangle;       ///< [weld_count + 1] into triangle_of_weld
+  std::vector<uint32_t> triangle_of_weld;     ///< triangles that touch each weld, ascending
   /// Every edge has two triangles that run it in opposite directions, and the rest pose has its inside behind them:
   /// from outside, triangles that face away are hidden.
   bool encloses_volume = false;
 };
 
-/// Checks and indexes a mesh. Errors: INVALID_ARGUMENT when there is no triangle, an index is past the last vertex, or a
-/// position is not finite. Degenerate triangles are kept (they have no area).
+/// Checks and indexes a mesh. Errors: INVALID_ARGUMENT when there is no triangle, an index is past the last vertex, or
+/// a position is not finite. Degenerate triangles are kept (they have no area).
 absl::StatusOr<std::shared_ptr<const MeshTopology>> build_topology(std::vector<glm::vec3> positions,
                                                                    std::vector<glm::uvec3> triangles);
 

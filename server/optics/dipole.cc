@@ -56,16 +56,15 @@ glm::vec3 diffuse_reflectance(const Dipole& dipole, float distance_mm) {
   glm::vec3 rd;
   for (int c = 0; c < 3; ++c) {
     const float transport = dipole.effective_transport_mm[c];
-    rd[c] = dipole.reduced_albedo[c] / (4 * std::numbers::pi_v<float>) *
-            (source_term(dipole.mean_free_path_mm[c], transport, distance_mm) +
-             source_term(dipole.virtual_height_mm[c], transport, distance_mm));
+    rd[c] = dipole.reduced_albedo[c] /
+            (4 * std::numbers::pi_v<float>)*(source_term(dipole.mean_free_path_mm[c], transport, distance_mm) +
+                                             source_term(dipole.virtual_height_mm[c], transport, distance_mm));
   }
   return rd;
 }
 
 glm::vec3 total_reflectance(const Coefficients& material) {
-  const glm::vec3 albedo =
-      material.reduced_scattering_mm / (material.absorption_mm + material.reduced_scattering_mm);
+  const glm::vec3 albedo = material.reduced_scattering_mm / (material.absorption_mm + material.reduced_scattering_mm);
   const glm::vec3 root = glm::sqrt(3.0f * (1.0f - albedo));
   const float mismatch = boundary_mismatch(material.refractive_index);
   return albedo * 0.5f * (1.0f + glm::exp(-4.0f / 3.0f * mismatch * root)) * glm::exp(-root);

@@ -53,9 +53,9 @@ void add_light(const LightStorage& light, float refractive_index, const SurfaceP
       const V smooth = hn::NegMulAdd(hn::Set(d, 2.0f), cone, hn::Set(d, 3.0f));
       share = hn::Mul(share, hn::Mul(hn::Mul(cone, cone), smooth));
     }
-    const V facing = hn::MulAdd(
-        x, hn::Load(d, points.normal_x + i),
-        hn::MulAdd(y, hn::Load(d, points.normal_y + i), hn::Mul(z, hn::Load(d, points.normal_z + i))));
+    const V facing =
+        hn::MulAdd(x, hn::Load(d, points.normal_x + i),
+                   hn::MulAdd(y, hn::Load(d, points.normal_y + i), hn::Mul(z, hn::Load(d, points.normal_z + i))));
     const V cosine = hn::Min(hn::Max(facing, zero), one);
     if (seen != nullptr) share = hn::Mul(share, hn::LoadU(d, seen + i));
     share = hn::Mul(share, hn::Mul(cosine, fresnel_transmittance(refractive_index, cosine)));
@@ -69,7 +69,9 @@ void add_light(const LightStorage& light, float refractive_index, const SurfaceP
 void dispatch_light(const LightStorage& light, float refractive_index, const SurfacePoints& points, size_t count,
                     const float* seen, EnteringLight& sum) {
   const bool spot = light.axis.a >= -1;
-  const auto add = light.power.a != 0 ? add_light<true, false> : spot ? add_light<false, true> : add_light<false, false>;
+  const auto add = light.power.a != 0 ? add_light<true, false>
+                   : spot             ? add_light<false, true>
+                                      : add_light<false, false>;
   add(light, refractive_index, points, count, seen, sum);
 }
 

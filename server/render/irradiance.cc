@@ -80,10 +80,9 @@ void IrradianceStage::run(const diffusion::SurfaceTopology& topology, const geom
                  points.set(lane, (shape.positions_mm[i.x] + shape.positions_mm[i.y] + shape.positions_mm[i.z]) / 3.0f,
                             length2 > 0 ? sum / std::sqrt(length2) : shape.normals[i.x]);
                });
-  light_points(lights, refractive_index, shadows == nullptr ? nullptr : of_vertex_.data(), irradiance_.of_vertex,
-               [&](SurfacePoints& points, size_t lane, size_t v) {
-                 points.set(lane, shape.positions_mm[v], shape.normals[v]);
-               });
+  light_points(
+      lights, refractive_index, shadows == nullptr ? nullptr : of_vertex_.data(), irradiance_.of_vertex,
+      [&](SurfacePoints& points, size_t lane, size_t v) { points.set(lane, shape.positions_mm[v], shape.normals[v]); });
 }
 
 }  // namespace diaphane::render

@@ -33,9 +33,7 @@ void PlacedMesh::complete_normals(StageClock& clock) {
     clock.sleep("normals");
     return;
   }
-  clock.run("normals", [&] {
-    geometry::place_normals(*topology_.lock(), *shape_.lock(), scene_from_mesh_, placed_);
-  });
+  clock.run("normals", [&] { geometry::place_normals(*topology_.lock(), *shape_.lock(), scene_from_mesh_, placed_); });
 }
 
 }  // namespace diaphane::render

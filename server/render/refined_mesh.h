@@ -27,8 +27,8 @@ class RefinedMesh {
   const std::shared_ptr<const diffusion::SurfaceTopology>& surface() const { return ordered_.surface; }
   const std::shared_ptr<const geometry::MeshTopology>& topology() const { return ordered_.surface->mesh; }
   const geometry::PlacedShape& shape() const { return shape_; }
-  /// Where the client gave no normals: calls fill(span) with room for area-weighted ones of the unmirrored triangles, and
-  /// makes of them shape().normals, interpolated along split edges. Else calls fill(nothing).
+  /// Where the client gave no normals: calls fill(span) with room for area-weighted ones of the unmirrored triangles,
+  /// and makes of them shape().normals, interpolated along split edges. Else calls fill(nothing).
   template <typename Fill>
   void fill_normals(const Fill& fill) {
     fill(normals_given_ ? std::span<glm::vec3>() : std::span<glm::vec3>(shape_.normals));

@@ -11,9 +11,9 @@
 
 namespace diaphane::render {
 
-/// All meshes of a scene as casters of shadows. Hard lights outside the scene are answered by depth maps, others by rays
-/// (Embree), whose structure is built when first needed and refitted as meshes move. One thread calls; work inside is
-/// spread over all cores. The same bytes on any number of threads.
+/// All meshes of a scene as casters of shadows. Hard lights outside the scene are answered by depth maps, others by
+/// rays (Embree), whose structure is built when first needed and refitted as meshes move. One thread calls; work inside
+/// is spread over all cores. The same bytes on any number of threads.
 class ShadowScene {
  public:
   ShadowScene();

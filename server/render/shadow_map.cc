@@ -146,23 +146,24 @@ void ShadowMap::draw(const LightStorage& light, const geometry::Bounds& bounds_m
   size_t first = 0;
   for (const ShadowCaster& caster : casters) {
     const std::span<const Projected> vertices(vertices_.data() + first, caster.positions_mm.size());
-    tbb::parallel_for(
-        tbb::blocked_range<size_t>(0, caster.triangles.size(), kChunk), [&](const tbb::blocked_range<size_t>& range) {
-          std::vector<float>& map = maps_.local();
-          if (map.empty()) map.assign(texel_count, kNothing);
-          rasterise(caster, vertices, range.begin(), range.end(), map.data());
-        });
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, caster.triangles.size(), kChunk),
+                      [&](const tbb::blocked_range<size_t>& range) {
+                        std::vector<float>& map = maps_.local();
+                        if (map.empty()) map.assign(texel_count, kNothing);
+                        rasterise(caster, vertices, range.begin(), range.end(), map.data());
+                      });
     first += caster.positions_mm.size();
   }
   nearest_.resize(texel_count);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, texel_count, 16 * kChunk), [&](const tbb::blocked_range<size_t>& range) {
-    std::fill(&nearest_[range.begin()], nearest_.data() + range.end(), kNothing);
-    for (const std::vector<float>& map : maps_) {
-      const float* from = map.data();
-      float* to = nearest_.data();
-      for (size_t i = range.begin(); i != range.end(); ++i) to[i] = to[i] < from[i] ? from[i] : to[i];
-    }
-  });
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, texel_count, 16 * kChunk),
+                    [&](const tbb::blocked_range<size_t>& range) {
+                      std::fill(&nearest_[range.begin()], nearest_.data() + range.end(), kNothing);
+                      for (const std::vector<float>& map : maps_) {
+                        const float* from = map.data();
+                        float* to = nearest_.data();
+                        for (size_t i = range.begin(); i != range.end(); ++i) to[i] = to[i] < from[i] ? from[i] : to[i];
+                      }
+                    });
 }
 
 float ShadowMap::visibility_at(const glm::vec3& point_mm, const glm::vec3& across) const {

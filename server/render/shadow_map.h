@@ -19,7 +19,8 @@ struct ShadowCaster {
   bool flipped = false;          ///< triangles run clockwise seen from outside
 };
 
-/// One light's view of all casters, fitted to them. Work is spread over all cores; the same bytes on any number of them.
+/// One light's view of all casters, fitted to them. Work is spread over all cores; the same bytes on any number of
+/// them.
 class ShadowMap {
  public:
   /// Whether a map can show what `light` sees of a scene within `bounds_mm`: it has no radius, and is directional or
@@ -50,10 +51,10 @@ class ShadowMap {
   bool directional_ = false;
   glm::vec3 eye_mm_{0};
   glm::vec3 right_{1, 0, 0}, up_{0, 1, 0}, ahead_{0, 0, 1};
-  glm::vec2 low_{0};                 ///< corner of the map before fitting
-  float texels_per_unit_ = 1;        ///< of the plane before fitting
-  float unit_of_texel_ = 1;          ///< its inverse
-  std::vector<Projected> vertices_;  ///< of all casters
+  glm::vec2 low_{0};                                          ///< corner of the map before fitting
+  float texels_per_unit_ = 1;                                 ///< of the plane before fitting
+  float unit_of_texel_ = 1;                                   ///< its inverse
+  std::vector<Projected> vertices_;                           ///< of all casters
   tbb::enumerable_thread_specific<std::vector<float>> maps_;  ///< of each thread: the nearest wins, in whatever order
   int size_px_ = 256;
   std::vector<float> nearest_;  ///< [size_px_²]; the lowest float where nothing is

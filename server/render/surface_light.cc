@@ -27,9 +27,8 @@ void SurfaceLight::update(const Inputs& inputs, StageClock& clock) {
 
   const bool moved = refit_reads_.renew(placed);
   stage("normals", moved, [&] {
-    inputs.mesh.fill_normals([&](std::span<glm::vec3> normals) {
-      integral_->update_positions(shape.positions_mm, normals);
-    });
+    inputs.mesh.fill_normals(
+        [&](std::span<glm::vec3> normals) { integral_->update_positions(shape.positions_mm, normals); });
   });
   stage("refit", moved, [&] { integral_->refit_geometry(); });
   std::vector<LightStorage> lights(inputs.lights.begin(), inputs.lights.end());

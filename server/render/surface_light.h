@@ -14,8 +14,8 @@
 
 namespace diaphane::render {
 
-/// Light on one mesh. Stages: normals, refit, irradiance, flux, gather; each sleeps while what it reads is the same. One thread
-/// calls; work is spread over all cores. The same bytes on any number of threads.
+/// Light on one mesh. Stages: normals, refit, irradiance, flux, gather; each sleeps while what it reads is the same.
+/// One thread calls; work is spread over all cores. The same bytes on any number of threads.
 class SurfaceLight {
  public:
   struct Inputs {

@@ -18,8 +18,9 @@ class FrameReactor final : public grpc::ServerUnaryReactor {
   FrameReactor(session::RenderThread& render_thread, session::FrameTask task, v1::RenderFrameResponse* response)
       : render_thread_(render_thread) {
     task.done = [this, response](absl::StatusOr<session::EncodedFrame> frame) {
-      if (frame.ok()) to_proto(*std::move(frame), *response);
-      Finish(to_grpc(frame.status()));
+      const absl::Status status = frame.status();
+      if (status.ok()) to_proto(*std::move(frame), *response);
+      Finish(to_grpc(status));
     };
     // gRPC binds the reactor, and may then cancel it, only after this.
     const auto job = render_thread_.submit(std::move(task));

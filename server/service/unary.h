@@ -35,8 +35,8 @@ absl::Status apply_once(ReplyMemory& replies, std::string_view method, const Req
                         const Apply& apply) {
   absl::StatusOr<ReplyMemory::Call> call = replies.begin(method, request.request_id(), request.SerializeAsString());
   if (!call.ok()) return call.status();
-  if (call->reply().has_value()) {
-    response.ParseFromString(*call->reply());
+  if (const std::optional<std::string>& reply = call->reply()) {
+    response.ParseFromString(*reply);
     return absl::OkStatus();
   }
   absl::Status status = apply(response);

@@ -95,4 +95,10 @@ class Client {
   std::shared_ptr<internal::Connection> connection_;
 };
 
+/// Asks the server at `address`, by the health protocol of gRPC, whether it serves. A server that is stopping does not.
+///
+/// Errors: INVALID_ARGUMENT for an address of another form than connect()'s; UNAVAILABLE when it does not serve, or
+/// nothing answers within connect_timeout; FAILED_PRECONDITION when what answers has no health to tell.
+absl::Status check_health(std::string_view address, const ClientOptions& options = {});
+
 }  // namespace diaphane

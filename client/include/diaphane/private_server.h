@@ -12,7 +12,7 @@
 namespace diaphane {
 
 struct PrivateServerOptions {
-  std::filesystem::path program;                    ///< empty: diaphane-server beside the running executable
+  std::filesystem::path program;  ///< empty: diaphane-server beside the running executable, else the first on PATH
   std::chrono::milliseconds start_timeout{60'000};  ///< until it says that it listens
   std::chrono::milliseconds stop_timeout{5'000};    ///< until it is killed, once it was asked to stop
   bool verbose = false;                             ///< its log goes to this process's stderr

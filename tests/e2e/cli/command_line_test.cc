@@ -14,6 +14,8 @@ TEST_F(CliTest, WrongCommandLinesExitWithTwoAndNameTheFlag) {
   EXPECT_THAT(refusal(2, render({})), HasSubstr("-o"));
   EXPECT_THAT(refusal(2, {"render", "-o", "x.png"}), HasSubstr("MESH"));
   EXPECT_THAT(refusal(2, {"--server", "nowhere", "info"}), HasSubstr("--server"));
+  EXPECT_THAT(refusal(2, {"--server", "nowhere", "health"}), HasSubstr("--server"));
+  EXPECT_THAT(refusal(2, {"health"}), HasSubstr("--server"));
   EXPECT_THAT(refusal(2, {"scene", "ls"}), HasSubstr("--server"));
   EXPECT_THAT(refusal(2, {"scene"}), HasSubstr("ls"));
   EXPECT_THAT(refusal(2, {"paint"}), HasSubstr("paint"));
@@ -32,6 +34,7 @@ TEST_F(CliTest, LocalFilesThatCannotBeUsedExitWithFiveAndAreNamed) {
 
 TEST_F(CliTest, ServersThatDoNotAnswerExitWithThree) {
   EXPECT_THAT(refusal(3, {"--server", "unix:" + (folder_ / "none").string(), "info"}), HasSubstr("no answer"));
+  EXPECT_THAT(refusal(3, {"--server", "unix:" + (folder_ / "none").string(), "health"}), HasSubstr("none"));
 }
 
 TEST_F(CliTest, HelpAndVersionGoToStdout) {

@@ -20,9 +20,9 @@ void redirect(const fs::path& path, int descriptor) {
 
 // Starts it with its stdout in .stdout, and stderr where `redirect_stderr` says.
 template <typename Redirect>
-pid_t start_diaphane(const fs::path& folder, const std::vector<std::string>& arguments,
-                     const Redirect& redirect_stderr) {
-  const std::string program = std::string(DIAPHANE_BIN_DIR) + "/diaphane";
+pid_t start(const std::string& name, const fs::path& folder, const std::vector<std::string>& arguments,
+            const Redirect& redirect_stderr) {
+  const std::string program = std::string(DIAPHANE_BIN_DIR) + "/" + name;
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
@@ -43,17 +43,21 @@ int exit_code_of(pid_t child) {
 
 }  // namespace
 
-Finished run_diaphane(const fs::path& folder, const std::vector<std::string>& arguments) {
+Finished run_program(const std::string& name, const fs::path& folder, const std::vector<std::string>& arguments) {
   const fs::path err = folder / ".stderr";
-  const int code = exit_code_of(start_diaphane(folder, arguments, [&] { redirect(err, STDERR_FILENO); }));
+  const int code = exit_code_of(start(name, folder, arguments, [&] { redirect(err, STDERR_FILENO); }));
   return {code, read_file(folder / ".stdout"), read_file(err)};
+}
+
+Finished run_diaphane(const fs::path& folder, const std::vector<std::string>& arguments) {
+  return run_program("diaphane", folder, arguments);
 }
 
 Finished run_diaphane_on_terminal(const fs::path& folder, const std::vector<std::string>& arguments) {
   int terminal = -1;
   int program_side = -1;
   if (openpty(&terminal, &program_side, nullptr, nullptr, nullptr) != 0) return {};
-  const pid_t child = start_diaphane(folder, arguments, [&] { dup2(program_side, STDERR_FILENO); });
+  const pid_t child = start("diaphane", folder, arguments, [&] { dup2(program_side, STDERR_FILENO); });
   close(program_side);
   // Reading fails once the program, which holds the other side, has ended.
   std::string err;

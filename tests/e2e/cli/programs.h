@@ -13,7 +13,11 @@ struct Finished {
   std::string err;
 };
 
-/// Runs build/bin/diaphane in `folder` to its end.
+/// Runs build/bin/PROGRAM in `folder` to its end.
+Finished run_program(const std::string& name, const std::filesystem::path& folder,
+                     const std::vector<std::string>& arguments);
+
+/// run_program("diaphane", ...)
 Finished run_diaphane(const std::filesystem::path& folder, const std::vector<std::string>& arguments);
 
 /// The same, with a terminal in the place of stderr: `err` is what it was sent.

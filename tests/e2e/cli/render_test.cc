@@ -78,6 +78,13 @@ TEST_F(CliWithServerTest, JsonSaysWhatWasMade) {
   EXPECT_FALSE(made["stages"].empty());
 }
 
+TEST_F(CliWithServerTest, HealthSaysThatItServes) {
+  const Finished text = run(with_server({"health"}));
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_EQ(text.out, "serving\n");
+  EXPECT_EQ(nlohmann::json::parse(run(with_server({"--json", "health"})).out), nlohmann::json({{"serving", true}}));
+}
+
 TEST_F(CliWithServerTest, JsonListsWhatTheServerKnows) {
   const json presets = json::parse(run(with_server({"materials", "--json"})).out);
   const auto marble = std::find_if(presets.begin(), presets.end(), [](const json& p) { return p["name"] == "marble"; });

@@ -18,6 +18,7 @@ extern char** environ;
 
 namespace {
 
+using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 
 /// A running diaphane-server with pipes to its three streams.
@@ -168,6 +169,22 @@ TEST(ServerProcess, RefusesWrongUseWithTwo) {
     EXPECT_EQ(out, "");
     EXPECT_NE(err, "");
   }
+}
+
+TEST(ServerProcess, RefusesAPublicAddressInOneLine) {
+  Process server({"--listen", "0.0.0.0:0"});
+  std::string err;
+  EXPECT_EQ(server.wait(nullptr, &err), 2);
+  EXPECT_THAT(err, MatchesRegex("diaphane-server: 0\\.0\\.0\\.0:0 [^\n]*--allow-public-plaintext\n"));
+}
+
+TEST(ServerProcess, ListensOnAPublicAddressWhenToldToAndWarns) {
+  Process server({"--listen", "0.0.0.0:0", "--allow-public-plaintext", "--warm", "none", "--log-level", "warning"});
+  EXPECT_THAT(server.read_line(), MatchesRegex("listening on 0\\.0\\.0\\.0:[1-9][0-9]*"));
+  server.send(SIGTERM);
+  std::string err;
+  EXPECT_EQ(server.wait(nullptr, &err), 0);
+  EXPECT_THAT(err, HasSubstr("warning plain text on a public address address=0.0.0.0:0"));
 }
 
 TEST(ServerProcess, TellsItsVersion) {

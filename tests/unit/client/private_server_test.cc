@@ -1,6 +1,7 @@
 #include "diaphane/private_server.h"
 
 #include <gmock/gmock.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -101,6 +102,16 @@ TEST_F(PrivateServerTest, StopEndsTheWait) {
   options.stop = stop.get_token();
   stop.request_stop();
   EXPECT_EQ(PrivateServer::start(options).status().code(), absl::StatusCode::kCancelled);
+}
+
+TEST_F(PrivateServerTest, TakesTheProgramOnPathWhereNoneIsBesideTheExecutable) {
+  fs::rename(script(std::string(kListen) + "cat").program, folder_ / "diaphane-server");
+  const std::string path = getenv("PATH");
+  setenv("PATH", (":" + folder_.string() + ":" + path).c_str(), 1);
+  const auto server = PrivateServer::start();
+  setenv("PATH", path.c_str(), 1);
+  ASSERT_TRUE(server.ok()) << server.status();
+  EXPECT_EQ(text_of("arguments"), "--listen " + server->address() + " --exit-with-stdin --warm none\n");
 }
 
 TEST_F(PrivateServerTest, NamesAProgramThatIsNotThere) {

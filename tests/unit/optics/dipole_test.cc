@@ -19,8 +19,7 @@ glm::vec3 integrate_over_plane(const Dipole& dipole) {
   for (double r = 1e-5; r < 1e4; r *= kStep) {
     const double next = r * kStep;
     const auto middle = static_cast<float>(0.5 * (r + next));
-    sum += diffuse_reflectance(dipole, middle) *
-           static_cast<float>(std::numbers::pi * (next * next - r * r));
+    sum += diffuse_reflectance(dipole, middle) * static_cast<float>(std::numbers::pi * (next * next - r * r));
   }
   return sum;
 }

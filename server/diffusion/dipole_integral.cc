@@ -208,7 +208,7 @@ void DipoleIntegral::set_material(const optics::Coefficients& material) {
 void DipoleIntegral::prepare_tables() {
   State& s = *state_;
   const float radius = s.tree.block(s.tree.top_level(), 0)[4 * kRadius];
-  s.kernels.prepare(2 * radius, s.tree.spacing_keys);
+  s.kernels.prepare(2 * radius, s.tree.spacing2_mm2);
 }
 
 void DipoleIntegral::gather(Quality quality, std::span<glm::vec3> radiosity) {

@@ -50,13 +50,12 @@ void descend(const GatherInput& input, GatherScratch& scratch, uint32_t level, u
   }
   const float* block = tree.block(child_level, node);
   for (uint32_t k = 0; k < 4 && 4 * node + k < tree.node_count(child_level); ++k) {
-    const Receiver receiver{
-        {block[4 * kCentreX + k], block[4 * kCentreY + k], block[4 * kCentreZ + k]},
-        block[4 * kSpread2 + k],
-        block[4 * kRadius + k],
-        block[4 * kArea + k],
-        {block[4 * kFacingX + k], block[4 * kFacingY + k], block[4 * kFacingZ + k]},
-        child_level == NodeTree::kLeafLevel ? spacing_of_key(tree.spacing_keys[4 * node + k]) : 0.0f};
+    const Receiver receiver{{block[4 * kCentreX + k], block[4 * kCentreY + k], block[4 * kCentreZ + k]},
+                            block[4 * kSpread2 + k],
+                            block[4 * kRadius + k],
+                            block[4 * kArea + k],
+                            {block[4 * kFacingX + k], block[4 * kFacingY + k], block[4 * kFacingZ + k]},
+                            child_level == NodeTree::kLeafLevel ? std::sqrt(tree.spacing2_mm2[4 * node + k]) : 0.0f};
     Expansion own;
     shift(expansion, receiver.centre_mm, own);
     if (child_level == NodeTree::kLeafLevel) {

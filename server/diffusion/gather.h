@@ -64,6 +64,7 @@ struct GatherScratch {
   };
   std::vector<Level> levels;
   std::array<LeafSources, 2> sides;  ///< by Side
+  KernelTable blended;
 };
 
 /// Everything that a gather reads, and where it writes.

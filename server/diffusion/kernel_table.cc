@@ -151,7 +151,7 @@ void KernelSet::set_material(const optics::Coefficients& material) {
   diameter_mm_ = 0;
 }
 
-void KernelSet::prepare(float diameter_mm, const std::vector<uint8_t>& spacing_keys) {
+void KernelSet::prepare(float diameter_mm, const std::vector<float>& spacing2_mm2) {
   // In steps of two, so that a deforming body keeps its tables.
   const float diameter = std::exp2(std::ceil(std::log2(std::clamp(diameter_mm, 1e-6f, 1e18f))));
   if (diameter != diameter_mm_) {
@@ -168,21 +168,23 @@ void KernelSet::prepare(float diameter_mm, const std::vector<uint8_t>& spacing_k
     }
     near_.fill(nullptr);
   }
-  for (const uint8_t key : spacing_keys) {
-    if (!near_[key]) build(key);
+  for (const float spacing2 : spacing2_mm2) {
+    const uint32_t step = locate_spacing(spacing2).step;
+    if (!near_[step]) build(step);
+    if (!near_[step + 1]) build(step + 1);
   }
 }
 
-void KernelSet::build(uint8_t key) {
-  const double spacing = spacing_of_key(key);
+void KernelSet::build(uint32_t step) {
+  const double spacing = spacing_of_step(step);
   bool whole = true;
   for (const GaussianSum& sum : gaussians_) whole = whole && carried_share(sum.deviation_mm[0], spacing) == 1;
-  local_response_[key] = glm::vec3(0);
+  local_response_[step] = glm::vec3(0);
   if (whole) {
-    near_[key] = &far_;
+    near_[step] = &far_;
     return;
   }
-  if (!built_[key]) built_[key] = std::make_unique<KernelTable>();
+  if (!built_[step]) built_[step] = std::make_unique<KernelTable>();
   for (int c = 0; c < 3; ++c) {
     std::array<double, GaussianSum::kTerms> rate{}, left_out{};
     double response = 0;
@@ -192,7 +194,7 @@ void KernelSet::build(uint8_t key) {
       left_out[k] = gaussians_[c].weight[k] * (1 - carried_share(gaussians_[c].deviation_mm[k], spacing));
       response += left_out[k] * 2 * pi * variance;
     }
-    local_response_[key][c] = static_cast<float>(response);
+    local_response_[step][c] = static_cast<float>(response);
     const auto near = [&](double distance2) {
       KernelValue k = dipole_kernel(dipole_, c, distance2);
       for (size_t i = 0; i < left_out.size(); ++i) {
@@ -204,9 +206,9 @@ void KernelSet::build(uint8_t key) {
       }
       return k;
     };
-    tabulate(domain_, c, near, *built_[key]);
+    tabulate(domain_, c, near, *built_[step]);
   }
-  near_[key] = built_[key].get();
+  near_[step] = built_[step].get();
 }
 
 }  // namespace diaphane::diffusion

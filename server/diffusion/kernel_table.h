@@ -52,20 +52,22 @@ class KernelSet {
  public:
   /// Starts over with a material.
   void set_material(const optics::Coefficients& material);
-  /// Builds what is missing for a body of `diameter_mm` whose leaves have the `spacing_keys`.
-  void prepare(float diameter_mm, const std::vector<uint8_t>& spacing_keys);
+  /// Builds what is missing for a body of `diameter_mm` whose leaves have the spacings s² `spacing2_mm2`.
+  void prepare(float diameter_mm, const std::vector<float>& spacing2_mm2);
 
   const KernelDomain& domain() const { return domain_; }
   const KernelTable& far_table() const { return far_; }
-  /// Rd without what is narrower than a leaf's spacing.
-  const KernelTable& near_table(uint8_t spacing_key) const { return *near_[spacing_key]; }
+  /// Rd without what is narrower than a step's spacing.
+  const KernelTable& near_table(uint32_t step) const { return *near_[step]; }
   /// What near_table leaves out, integrated over the plane: times the local irradiance it is radiosity.
-  const glm::vec3& local_response(uint8_t spacing_key) const { return local_response_[spacing_key]; }
+  glm::vec3 local_response(const SpacingPosition& at) const {
+    return local_response_[at.step] + at.share * (local_response_[at.step + 1u] - local_response_[at.step]);
+  }
   /// The smallest smooth distance of the channels, mm.
   float smooth_mm() const { return smooth_mm_; }
 
  private:
-  void build(uint8_t key);
+  void build(uint32_t step);
 
   optics::Dipole dipole_;
   std::array<GaussianSum, 3> gaussians_;
@@ -73,9 +75,9 @@ class KernelSet {
   float diameter_mm_ = 0;
   KernelDomain domain_;
   KernelTable far_;
-  std::array<const KernelTable*, kSpacingKeys> near_{};
-  std::array<glm::vec3, kSpacingKeys> local_response_{};
-  std::array<std::unique_ptr<KernelTable>, kSpacingKeys> built_;
+  std::array<const KernelTable*, kSpacingSteps> near_{};
+  std::array<glm::vec3, kSpacingSteps> local_response_{};
+  std::array<std::unique_ptr<KernelTable>, kSpacingSteps> built_;
 };
 
 }  // namespace diaphane::diffusion

@@ -148,14 +148,31 @@ HWY_INLINE void add_side(const GatherInput& input, const KernelTable& table, con
   into = leaf;
 }
 
+/// The table at a leaf's spacing: a step's own, or a mix of two in `blended`.
+HWY_INLINE const KernelTable& blend_tables(const KernelSet& kernels, const SpacingPosition& at, KernelTable& blended) {
+  const KernelTable& low = kernels.near_table(at.step);
+  const KernelTable& high = kernels.near_table(at.step + 1u);
+  if (&low == &high) return low;
+  constexpr size_t kFloats = sizeof(KernelTable) / sizeof(float);
+  const Tag d;
+  const V share = hn::Set(d, at.share);
+  const auto* from = reinterpret_cast<const float*>(&low);
+  const auto* to = reinterpret_cast<const float*>(&high);
+  for (size_t i = 0; i < kFloats; i += hn::Lanes(d)) {
+    const V a = hn::Load(d, from + i);
+    hn::Store(hn::MulAdd(share, hn::Sub(hn::Load(d, to + i), a), a), d, reinterpret_cast<float*>(&blended) + i);
+  }
+  return blended;
+}
+
 template <bool kColoured>
 HWY_INLINE void gather_leaf(const GatherInput& input, uint32_t leaf_node, const Receiver& receiver,
                             const Expansion& expansion, const Pack& pack, const uint32_t* open, size_t open_count,
                             GatherScratch& scratch) {
   const Tag d;
-  const uint8_t key = input.tree->spacing_keys[leaf_node];
-  const KernelTable& table = input.kernels->near_table(key);
-  const glm::vec3 local = input.kernels->local_response(key);
+  const SpacingPosition spacing = locate_spacing(input.tree->spacing2_mm2[leaf_node]);
+  const KernelTable& table = blend_tables(*input.kernels, spacing, scratch.blended);
+  const glm::vec3 local = input.kernels->local_response(spacing);
   open_nodes(input, receiver, open, open_count, scratch);
   alignas(64) float place[3][NodeTree::kLeafSlots];
   alignas(64) float result[3][NodeTree::kLeafSlots];

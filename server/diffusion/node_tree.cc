@@ -123,7 +123,7 @@ void measure_leaf(NodeTree& tree, uint32_t leaf) {
   }
   block[4 * kRadius] = std::sqrt(radius2);
   const uint32_t real = std::min(16u, tree.slot_count() - 16 * leaf);
-  tree.spacing_keys[leaf] = spacing_key(0.5f * (sum / static_cast<float>(real) + largest));
+  tree.spacing2_mm2[leaf] = 0.5f * (sum / static_cast<float>(real) + largest);
 }
 
 struct FluxChildren : Children {
@@ -220,20 +220,21 @@ void for_blocks_of_top(const NodeTree& tree, const Visit& visit) {
 uint32_t first_leaf(uint32_t chunk) { return chunk * (NodeTree::kChunkSlots / 16); }
 uint32_t end_leaf(const NodeTree& tree, uint32_t chunk) { return std::min(first_leaf(chunk + 1), tree.leaf_count()); }
 
-constexpr int kKeyBias = (127 - 32) << 2;
+constexpr int kStepBias = (127 - 32) << 2;
 
 }  // namespace
 
-uint8_t spacing_key(float spacing2_mm2) {
-  // The exponent and the mantissa's top two bits.
-  const auto step = static_cast<int>(std::bit_cast<uint32_t>(std::max(spacing2_mm2, 0.0f)) >> 21);
-  return static_cast<uint8_t>(std::clamp(step - kKeyBias, 0, static_cast<int>(kSpacingKeys) - 1));
+SpacingPosition locate_spacing(float spacing2_mm2) {
+  // The exponent and the mantissa's top two bits; the bits below are the way to the next step.
+  const float lowest = spacing_of_step(0) * spacing_of_step(0);
+  const auto bits = std::bit_cast<uint32_t>(std::max(spacing2_mm2, lowest));
+  const int step = static_cast<int>(bits >> 21) - kStepBias;
+  if (step >= static_cast<int>(kSpacingSteps) - 1) return {kSpacingSteps - 2, 1};
+  return {static_cast<uint8_t>(std::max(step, 0)), static_cast<float>(bits & 0x1fffff) / 0x200000};
 }
 
-float spacing_of_key(uint8_t key) {
-  const auto low = std::bit_cast<float>(static_cast<uint32_t>(key + kKeyBias) << 21);
-  const auto high = std::bit_cast<float>(static_cast<uint32_t>(key + kKeyBias + 1) << 21);
-  return std::sqrt(std::sqrt(low * high));
+float spacing_of_step(uint32_t step) {
+  return std::sqrt(std::bit_cast<float>((step + static_cast<uint32_t>(kStepBias)) << 21));
 }
 
 NodeTree::NodeTree(uint32_t slot_count) : slot_count_(slot_count) {
@@ -244,7 +245,7 @@ NodeTree::NodeTree(uint32_t slot_count) : slot_count_(slot_count) {
     blocks_[level].assign(size_t{block_count(level)} * kBlockFloats, 0.0f);
   places.resize(size_t{16} * leaf_count());
   sources.resize(size_t{16} * leaf_count());
-  spacing_keys.resize(leaf_count());
+  spacing2_mm2.resize(leaf_count());
 }
 
 void NodeTree::refit_geometry_chunk(uint32_t chunk) {
@@ -273,7 +274,7 @@ void NodeTree::refit_flux_top(bool coloured) {
 }
 
 size_t NodeTree::bytes() const {
-  size_t sum = places.size() * sizeof(Place) + sources.size() * sizeof(Source) + spacing_keys.size();
+  size_t sum = places.size() * sizeof(Place) + sources.size() * sizeof(Source) + spacing2_mm2.size() * sizeof(float);
   for (const std::vector<float>& level : blocks_) sum += level.size() * sizeof(float);
   return sum;
 }

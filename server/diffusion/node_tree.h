@@ -77,8 +77,8 @@ class NodeTree {
   /// [16·leaf_count]; those past slot_count repeat the last slot, without area or flux.
   std::vector<Place> places;
   std::vector<Source> sources;
-  /// [leaf_count] what spacing_key() makes of the leaf's vertices.
-  std::vector<uint8_t> spacing_keys;
+  /// [leaf_count] ½(mean + max area) of the leaf's vertices: s².
+  std::vector<float> spacing2_mm2;
 
   /// Work is dealt out in chunks of this many slots; chunks know nothing of each other.
   static constexpr uint32_t kChunkSlots = 256;
@@ -98,10 +98,15 @@ class NodeTree {
   std::vector<std::vector<float>> blocks_;  ///< by level; level 0 has none
 };
 
-/// Quarter octaves of s², s = √(½(mean + max area)) of a leaf's vertices: one kernel table for each.
-constexpr uint32_t kSpacingKeys = 256;
-uint8_t spacing_key(float spacing2_mm2);
-/// The middle of a key's range, mm.
-float spacing_of_key(uint8_t key);
+/// Kernel tables stand at quarter octaves of s², s = √(½(mean + max area)) of a leaf's vertices; a leaf blends the two
+/// around its own, so that nothing jumps as a body deforms.
+constexpr uint32_t kSpacingSteps = 256;
+struct SpacingPosition {
+  uint8_t step = 0;  ///< below kSpacingSteps − 1
+  float share = 0;   ///< of the next step's table, 0..1
+};
+SpacingPosition locate_spacing(float spacing2_mm2);
+/// s at a step, mm.
+float spacing_of_step(uint32_t step);
 
 }  // namespace diaphane::diffusion

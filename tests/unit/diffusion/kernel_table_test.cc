@@ -40,13 +40,13 @@ TEST(DipoleKernel, IsTheReflectanceAndItsDerivatives) {
 }
 
 TEST(KernelTables, AreCloseToTheDipoleWhereverEnergyIs) {
-  const std::vector<uint8_t> fine_leaves = {spacing_key(1e-8f)};
+  const std::vector<float> fine_leaves = {1e-8f};
   for (const optics::MaterialPreset& preset : optics::material_presets()) {
     const optics::Dipole dipole = optics::make_dipole(preset.coefficients);
     KernelSet kernels;
     kernels.set_material(preset.coefficients);
     kernels.prepare(30, fine_leaves);
-    EXPECT_EQ(&kernels.near_table(fine_leaves[0]), &kernels.far_table());
+    EXPECT_EQ(&kernels.near_table(locate_spacing(fine_leaves[0]).step), &kernels.far_table());
     for (int c = 0; c < 3; ++c) {
       // The share of ∫ Rd dA that the tables get wrong.
       double off = 0, total = 0;
@@ -86,28 +86,37 @@ TEST(KernelTables, NearAndLocalPartsMakeUpTheWhole) {
   KernelSet kernels;
   kernels.set_material(material);
   const float spacing = 2 * kernels.smooth_mm();
-  const std::vector<uint8_t> keys = {spacing_key(spacing * spacing)};
-  kernels.prepare(30, keys);
-  ASSERT_NE(&kernels.near_table(keys[0]), &kernels.far_table());
+  kernels.prepare(30, {spacing * spacing});
+  const SpacingPosition at{locate_spacing(spacing * spacing).step, 0};
+  ASSERT_NE(&kernels.near_table(at.step), &kernels.far_table());
   for (int c = 0; c < 3; ++c) {
-    EXPECT_GT(kernels.local_response(keys[0])[c], 0.05f);
+    EXPECT_GT(kernels.local_response(at)[c], 0.05f);
     double near = 0, whole = 0;
     for (double r = 0.0005; r < 14; r *= 1.005) {
       const double ring = 2 * std::numbers::pi * r * r * std::log(1.005);
-      near += looked_up(kernels.domain(), kernels.near_table(keys[0]), c, r * r).value * ring;
+      near += looked_up(kernels.domain(), kernels.near_table(at.step), c, r * r).value * ring;
       whole += dipole_kernel(dipole, c, r * r).value * ring;
     }
-    EXPECT_NEAR((near + kernels.local_response(keys[0])[c]) / whole, 1, 0.003);
+    EXPECT_NEAR((near + kernels.local_response(at)[c]) / whole, 1, 0.003);
   }
 }
 
-TEST(SpacingKeys, NameTheirSpacing) {
+TEST(LocateSpacing, FallsBetweenTheStepsAroundIt) {
   for (float spacing = 0.001f; spacing < 1000; spacing *= 1.07f) {
-    const float middle = spacing_of_key(spacing_key(spacing * spacing));
-    EXPECT_LE(std::abs(std::log2(middle / spacing)), 0.16f);
+    const SpacingPosition at = locate_spacing(spacing * spacing);
+    const float low = spacing_of_step(at.step), high = spacing_of_step(at.step + 1u);
+    EXPECT_LE(low, spacing * 1.00001f);
+    EXPECT_GE(high, spacing * 0.99999f);
+    EXPECT_NEAR(low * low + at.share * (high * high - low * low), spacing * spacing, 1e-5f * spacing * spacing);
+    EXPECT_LE(high / low, 1.13f) << "an eighth of an octave";
   }
-  EXPECT_EQ(spacing_key(0), 0);
-  EXPECT_EQ(spacing_key(1e38f), kSpacingKeys - 1);
+}
+
+TEST(LocateSpacing, StaysWithinTheSteps) {
+  EXPECT_EQ(locate_spacing(0).step, 0);
+  EXPECT_EQ(locate_spacing(0).share, 0);
+  EXPECT_EQ(locate_spacing(1e38f).step, kSpacingSteps - 2);
+  EXPECT_EQ(locate_spacing(1e38f).share, 1);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <pty.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -35,18 +36,25 @@ pid_t start(const std::string& name, const fs::path& folder, const std::vector<s
   _exit(127);
 }
 
-int exit_code_of(pid_t child) {
+/// Waits for its end; the rest of what there is to say is the caller's.
+Finished finish(pid_t child) {
   int status = 0;
-  waitpid(child, &status, 0);
-  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+  rusage used{};
+  wait4(child, &status, 0, &used);
+  Finished finished;
+  finished.exit_code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+  finished.peak_memory_kib = used.ru_maxrss;
+  return finished;
 }
 
 }  // namespace
 
 Finished run_program(const std::string& name, const fs::path& folder, const std::vector<std::string>& arguments) {
   const fs::path err = folder / ".stderr";
-  const int code = exit_code_of(start(name, folder, arguments, [&] { redirect(err, STDERR_FILENO); }));
-  return {code, read_file(folder / ".stdout"), read_file(err)};
+  Finished finished = finish(start(name, folder, arguments, [&] { redirect(err, STDERR_FILENO); }));
+  finished.out = read_file(folder / ".stdout");
+  finished.err = read_file(err);
+  return finished;
 }
 
 Finished run_diaphane(const fs::path& folder, const std::vector<std::string>& arguments) {
@@ -64,7 +72,10 @@ Finished run_diaphane_on_terminal(const fs::path& folder, const std::vector<std:
   char bytes[4096];
   for (ssize_t count; (count = read(terminal, bytes, sizeof bytes)) > 0;) err.append(bytes, static_cast<size_t>(count));
   close(terminal);
-  return {exit_code_of(child), read_file(folder / ".stdout"), err};
+  Finished finished = finish(child);
+  finished.out = read_file(folder / ".stdout");
+  finished.err = err;
+  return finished;
 }
 
 std::string read_file(const fs::path& path) {

@@ -11,6 +11,7 @@ struct Finished {
   int exit_code = -1;  ///< 128 + the signal, where one ended it
   std::string out;
   std::string err;
+  long peak_memory_kib = 0;
 };
 
 /// Runs build/bin/PROGRAM in `folder` to its end.

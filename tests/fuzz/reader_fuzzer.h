@@ -43,6 +43,16 @@ inline void check_promises(const absl::StatusOr<LoadedFile>& file, const ReadLim
     triangles += mesh.triangles.size() / 3;
     require(!mesh.triangles.empty() && mesh.triangles.size() % 3 == 0, "whole triangles");
     require(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size(), "a normal per position");
+    require(mesh.colors.empty() || mesh.colors.size() == mesh.positions.size(), "a colour per position");
+    require(mesh.texture_coordinates.empty() || mesh.texture_coordinates.size() == mesh.positions.size(),
+            "a texture coordinate per position");
+    for (const Rgb& colour : mesh.colors) {
+      for (const float channel : {colour.r, colour.g, colour.b})
+        require(channel >= 0 && channel <= 1, "colours of 0..1");
+    }
+    for (const TextureCoordinate& coordinate : mesh.texture_coordinates) {
+      require(std::isfinite(coordinate.u) && std::isfinite(coordinate.v), "finite texture coordinates");
+    }
     for (uint32_t index : mesh.triangles) require(index < mesh.positions.size(), "indices in range");
     for (const Vec3& position : mesh.positions) require(is_finite(position), "finite positions");
     for (const Vec3& normal : mesh.normals) require(is_finite(normal), "finite normals");

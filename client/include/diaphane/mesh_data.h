@@ -12,9 +12,11 @@ namespace diaphane {
 
 /// A triangle mesh. Two vertices at bit-equal positions are the same place: the surface is connected there.
 struct MeshData {
-  std::string name;                 ///< for messages only; may be empty
-  std::vector<Vec3> positions;      ///< mesh units
-  std::vector<Vec3> normals;        ///< empty (computed by the server), or one per position, of any length
+  std::string name;             ///< for messages only; may be empty
+  std::vector<Vec3> positions;  ///< mesh units
+  std::vector<Vec3> normals;    ///< empty (computed by the server), or one per position, of any length
+  std::vector<Rgb> colors;      ///< empty, or one per position: linear RGB, 0..1
+  std::vector<TextureCoordinate> texture_coordinates;  ///< empty, or one per position
   std::vector<uint32_t> triangles;  ///< three indices into `positions` per triangle, counter-clockwise from outside
 
   /// Mesh units to scene units: column-major 4×4, affine and invertible.

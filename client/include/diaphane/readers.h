@@ -33,13 +33,17 @@ struct LoadedFile {
 ///
 /// - Polygons come back as n-2 triangles: convex ones as a fan, concave ones clipped ear by ear.
 /// - A triangle that names one vertex twice is left out, with a warning.
-/// - OBJ, PLY, OFF: one mesh; vertex i is the file's vertex i. OBJ appends a copy of a vertex for every further normal
-///   that its faces give it. Texture coordinates, colours, materials and groups are not read.
+/// - OBJ, PLY, OFF: one mesh; vertex i is the file's vertex i. OBJ appends a copy of a vertex for every further pair of
+///   normal and texture coordinate that its faces give it. Materials and groups are not read.
 /// - STL: one mesh per solid, corners at bit-equal positions welded.
 /// - glTF: one mesh per primitive and node, placed by its scene_from_mesh (a negative scale stays there), in rest pose,
 ///   with the default morph weights applied. External buffers are opened only inside the file's own folder; images
 ///   never.
 /// - Normals come as the file has them, of any length; (0, 0, 0) where it has none for that vertex.
+/// - Colours of vertices come as linear RGB, cut to 0..1 and white where a vertex has none: glTF's COLOR_0 and PLY's
+///   floating-point ones are linear already; PLY's integers, OBJ's and OFF's are taken as sRGB (OBJ's and OFF's as
+///   0..255 where one of them is above 1). Texture coordinates (OBJ's vt, PLY's s t, u v and texture_u texture_v, OFF's
+///   ST, glTF's TEXCOORD_0) come with v counted from above, (0, 0) where a vertex has none. Neither is read per face.
 ///
 /// Errors, each one line "PATH: what, where, range": kNotFound no such file; kPermissionDenied it cannot be opened;
 /// kInvalidArgument malformed (non-finite positions, indices out of range, truncated, ...) or nothing to render;

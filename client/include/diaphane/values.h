@@ -16,6 +16,14 @@ struct Vec3 {
   friend bool operator==(const Vec3&, const Vec3&) = default;
 };
 
+/// A place in a picture, 0..1 from its left and upper edges (glTF's convention); beyond that it repeats.
+struct TextureCoordinate {
+  float u = 0;
+  float v = 0;
+
+  friend bool operator==(const TextureCoordinate&, const TextureCoordinate&) = default;
+};
+
 /// Three linear channels, red, green and blue; the field that holds one says the unit.
 struct Rgb {
   float r = 0;

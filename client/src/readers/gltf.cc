@@ -6,6 +6,7 @@
 #include <map>
 
 #include "fmt/format.h"
+#include "readers/colour.h"
 #include "readers/gltf_accessor.h"
 #include "readers/gltf_buffers.h"
 #include "readers/gltf_document.h"
@@ -63,6 +64,7 @@ class GltfReader {
 
     MeshData data;
     absl::Status status = read_vertices(primitive, position->second, data);
+    if (status.ok()) status = read_looks(primitive, data);
     if (status.ok()) status = apply_morphs(instance, primitive, data);
     if (status.ok()) status = check_vertices(data, where(instance, index));
     if (status.ok()) status = read_triangles(primitive, where(instance, index), data);
@@ -108,6 +110,23 @@ class GltfReader {
     return absl::OkStatus();
   }
 
+  absl::Status read_looks(const tinygltf::Primitive& primitive, MeshData& data) {
+    const uint64_t count = data.positions.size();
+    if (const auto colour = primitive.attributes.find("COLOR_0"); colour != primitive.attributes.end()) {
+      absl::StatusOr<std::vector<Rgb>> colours = accessors_.read_colours(colour->second, count);
+      if (!colours.ok()) return colours.status();
+      make_linear(*colours, ColourCoding::kLinear);
+      data.colors = *std::move(colours);
+    }
+    if (const auto texture = primitive.attributes.find("TEXCOORD_0"); texture != primitive.attributes.end()) {
+      absl::StatusOr<std::vector<TextureCoordinate>> coordinates =
+          accessors_.read_texture_coordinates(texture->second, count);
+      if (!coordinates.ok()) return coordinates.status();
+      data.texture_coordinates = *std::move(coordinates);
+    }
+    return absl::OkStatus();
+  }
+
   // The rest pose is base + Σ weight · target, glTF 2.0 section 3.7.2.2; the node's weights go before the mesh's.
   absl::Status apply_morphs(const GltfInstance& instance, const tinygltf::Primitive& primitive, MeshData& data) {
     const std::vector<double>* weights = &model_.meshes[instance.mesh].weights;
@@ -150,6 +169,11 @@ class GltfReader {
       if (is_finite(normal)) continue;
       normal = {};
       ++skipped_["normals that are not finite"];
+    }
+    for (TextureCoordinate& coordinate : data.texture_coordinates) {
+      if (std::isfinite(coordinate.u) && std::isfinite(coordinate.v)) continue;
+      coordinate = {};
+      ++skipped_["texture coordinates that are not finite"];
     }
     return absl::OkStatus();
   }

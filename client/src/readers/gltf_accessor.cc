@@ -1,6 +1,8 @@
 #include "readers/gltf_accessor.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstring>
 
 #include "fmt/format.h"
@@ -44,11 +46,21 @@ size_t component_bytes(int component) {
   return static_cast<size_t>(tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(component)));
 }
 
-Vec3 load_vec3(const char* data, const tinygltf::Accessor& accessor) {
+// The leading components of an element, as many floats as T is made of.
+template <typename T>
+T load_floats(const char* data, const tinygltf::Accessor& accessor) {
+  constexpr size_t kCount = sizeof(T) / sizeof(float);
+  std::array<float, kCount> values;
   const size_t step = component_bytes(accessor.componentType);
-  return {load_component(data, accessor.componentType, accessor.normalized),
-          load_component(data + step, accessor.componentType, accessor.normalized),
-          load_component(data + 2 * step, accessor.componentType, accessor.normalized)};
+  for (size_t i = 0; i < kCount; ++i) {
+    values[i] = load_component(data + i * step, accessor.componentType, accessor.normalized);
+  }
+  return std::bit_cast<T>(values);
+}
+
+size_t element_bytes(const tinygltf::Accessor& accessor) {
+  return component_bytes(accessor.componentType) *
+         static_cast<size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type)));
 }
 
 uint32_t load_index(const char* data, int component) {
@@ -67,9 +79,17 @@ bool is_index_type(int component) {
          component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
 }
 
-bool is_attribute_type(int component) {
+bool is_any_type(const tinygltf::Accessor& accessor) {
+  const int component = accessor.componentType;
   return component == TINYGLTF_COMPONENT_TYPE_FLOAT ||
          (component >= TINYGLTF_COMPONENT_TYPE_BYTE && component <= TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
+}
+
+bool is_unit_type(const tinygltf::Accessor& accessor) {
+  const int component = accessor.componentType;
+  return component == TINYGLTF_COMPONENT_TYPE_FLOAT ||
+         (accessor.normalized &&
+          (component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT));
 }
 
 bool uses_draco(const tinygltf::Model& model) {
@@ -83,7 +103,7 @@ GltfAccessors::GltfAccessors(const tinygltf::Model& model, const GltfBuffers& bu
     : model_(model),
       buffers_(buffers),
       source_(source),
-      most_elements_(4 * source.limits.max_vertices + 3 * source.limits.max_triangles) {}
+      most_elements_(6 * source.limits.max_vertices + 3 * source.limits.max_triangles) {}
 
 absl::StatusOr<const tinygltf::Accessor*> GltfAccessors::find(int accessor) const {
   if (accessor < 0 || static_cast<size_t>(accessor) >= model_.accessors.size()) {
@@ -141,29 +161,66 @@ absl::StatusOr<GltfAccessors::Elements> GltfAccessors::locate(int view, uint64_t
   return Elements{count > 0 ? bytes.data() + v.byteOffset + offset : nullptr, stride};
 }
 
-absl::StatusOr<std::vector<Vec3>> GltfAccessors::read_vec3(int index, uint64_t count, bool may_be_absent) {
+struct GltfAccessors::AttributeForm {
+  std::array<int, 2> types;
+  bool (*takes)(const tinygltf::Accessor& accessor);  // component types
+  std::string_view range;
+  bool may_be_absent = false;
+};
+
+absl::StatusOr<std::vector<Vec3>> GltfAccessors::read_vec3(int accessor, uint64_t count, bool may_be_absent) {
+  return read<Vec3>(accessor, count,
+                    {{TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC3},
+                     is_any_type,
+                     "must be VEC3 of floats or of 8 or 16 bit integers",
+                     may_be_absent});
+}
+
+absl::StatusOr<std::vector<Rgb>> GltfAccessors::read_colours(int accessor, uint64_t count) {
+  return read<Rgb>(accessor, count,
+                   {{TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4},
+                    is_unit_type,
+                    "must be VEC3 or VEC4 of floats or of normalised unsigned 8 or 16 bit integers"});
+}
+
+absl::StatusOr<std::vector<TextureCoordinate>> GltfAccessors::read_texture_coordinates(int accessor, uint64_t count) {
+  return read<TextureCoordinate>(
+      accessor, count,
+      {{TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC2}, is_any_type, "must be VEC2 of floats or of 8 or 16 bit integers"});
+}
+
+absl::StatusOr<const tinygltf::Accessor*> GltfAccessors::find_attribute(int index, uint64_t count,
+                                                                        const AttributeForm& form,
+                                                                        std::string_view where) {
   const absl::StatusOr<const tinygltf::Accessor*> found = find(index);
   if (!found.ok()) return found.status();
   const tinygltf::Accessor& accessor = **found;
-  const std::string where = fmt::format("accessor {}", index);
-  if (accessor.type != TINYGLTF_TYPE_VEC3 || !is_attribute_type(accessor.componentType)) {
+  if ((accessor.type != form.types[0] && accessor.type != form.types[1]) || !form.takes(accessor)) {
     return source_.malformed(fmt::format("type {} of component type {}", accessor.type, accessor.componentType), where,
-                             "must be VEC3 of floats or of 8 or 16 bit integers");
+                             form.range);
   }
   const absl::Status status = spend(accessor.count, count, where);
   if (!status.ok()) return status;
-  if (accessor.bufferView < 0 && !accessor.sparse.isSparse && !may_be_absent) {
+  if (accessor.bufferView < 0 && !accessor.sparse.isSparse && !form.may_be_absent) {
     if (uses_draco(model_)) return source_.unsupported("Draco compression (KHR_draco_mesh_compression)", where);
     return source_.malformed("no data", where, "must have a bufferView or be sparse");
   }
+  return &accessor;
+}
 
-  std::vector<Vec3> values;
+template <typename T>
+absl::StatusOr<std::vector<T>> GltfAccessors::read(int index, uint64_t count, const AttributeForm& form) {
+  const std::string where = fmt::format("accessor {}", index);
+  const absl::StatusOr<const tinygltf::Accessor*> found = find_attribute(index, count, form, where);
+  if (!found.ok()) return found.status();
+  const tinygltf::Accessor& accessor = **found;
+  std::vector<T> values;
   if (accessor.bufferView >= 0) {
     const absl::StatusOr<Elements> elements =
-        locate(accessor.bufferView, accessor.byteOffset, 3 * component_bytes(accessor.componentType), count, where);
+        locate(accessor.bufferView, accessor.byteOffset, element_bytes(accessor), count, where);
     if (!elements.ok()) return elements.status();
     values.resize(count);
-    for (size_t i = 0; i < values.size(); ++i) values[i] = load_vec3((*elements)[i], accessor);
+    for (size_t i = 0; i < values.size(); ++i) values[i] = load_floats<T>((*elements)[i], accessor);
   } else {
     values.resize(count);
   }
@@ -174,8 +231,9 @@ absl::StatusOr<std::vector<Vec3>> GltfAccessors::read_vec3(int index, uint64_t c
   return values;
 }
 
+template <typename T>
 absl::Status GltfAccessors::apply_sparse(const tinygltf::Accessor& accessor, std::string_view where,
-                                         std::vector<Vec3>& values) {
+                                         std::vector<T>& values) {
   const auto& sparse = accessor.sparse;
   if (sparse.count < 1 || static_cast<uint64_t>(sparse.count) > values.size()) {
     return source_.malformed(fmt::format("sparse count {}", sparse.count), where,
@@ -191,9 +249,8 @@ absl::Status GltfAccessors::apply_sparse(const tinygltf::Accessor& accessor, std
       locate(sparse.indices.bufferView, static_cast<uint64_t>(sparse.indices.byteOffset),
              component_bytes(sparse.indices.componentType), count, where);
   if (!indices.ok()) return indices.status();
-  const absl::StatusOr<Elements> replaced =
-      locate(sparse.values.bufferView, static_cast<uint64_t>(sparse.values.byteOffset),
-             3 * component_bytes(accessor.componentType), count, where);
+  const absl::StatusOr<Elements> replaced = locate(
+      sparse.values.bufferView, static_cast<uint64_t>(sparse.values.byteOffset), element_bytes(accessor), count, where);
   if (!replaced.ok()) return replaced.status();
   for (size_t i = 0; i < count; ++i) {
     const uint32_t target = load_index((*indices)[i], sparse.indices.componentType);
@@ -201,7 +258,7 @@ absl::Status GltfAccessors::apply_sparse(const tinygltf::Accessor& accessor, std
       return source_.malformed(fmt::format("sparse index {}", target), where,
                                fmt::format("must be 0..{}", values.size() - 1));
     }
-    values[target] = load_vec3((*replaced)[i], accessor);
+    values[target] = load_floats<T>((*replaced)[i], accessor);
   }
   return absl::OkStatus();
 }

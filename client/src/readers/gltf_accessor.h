@@ -28,6 +28,12 @@ class GltfAccessors {
   /// `may_be_absent`, an accessor without data is zeros, as in morph targets.
   absl::StatusOr<std::vector<Vec3>> read_vec3(int accessor, uint64_t count, bool may_be_absent = false);
 
+  /// `count` VEC3 or VEC4 of floats or of normalised unsigned integers: linear colours, whose alpha is passed over.
+  absl::StatusOr<std::vector<Rgb>> read_colours(int accessor, uint64_t count);
+
+  /// `count` VEC2 of what read_vec3() takes.
+  absl::StatusOr<std::vector<TextureCoordinate>> read_texture_coordinates(int accessor, uint64_t count);
+
   /// `count` SCALAR of unsigned integers.
   absl::StatusOr<std::vector<uint32_t>> read_indices(int accessor, uint64_t count);
 
@@ -39,11 +45,18 @@ class GltfAccessors {
     const char* operator[](size_t i) const { return data + i * stride; }
   };
 
+  struct AttributeForm;
+
   absl::StatusOr<const tinygltf::Accessor*> find(int accessor) const;
   absl::StatusOr<Elements> locate(int view, uint64_t offset, uint64_t element_bytes, uint64_t count,
                                   std::string_view where) const;
   absl::Status spend(uint64_t elements, uint64_t expected, std::string_view where);
-  absl::Status apply_sparse(const tinygltf::Accessor& accessor, std::string_view where, std::vector<Vec3>& values);
+  absl::StatusOr<const tinygltf::Accessor*> find_attribute(int accessor, uint64_t count, const AttributeForm& form,
+                                                           std::string_view where);
+  template <typename T>
+  absl::StatusOr<std::vector<T>> read(int accessor, uint64_t count, const AttributeForm& form);
+  template <typename T>
+  absl::Status apply_sparse(const tinygltf::Accessor& accessor, std::string_view where, std::vector<T>& values);
 
   const tinygltf::Model& model_;
   const GltfBuffers& buffers_;

@@ -46,6 +46,10 @@ absl::Status MeshBuilder::repeat_vertex(uint32_t vertex) {
     return source_.over_limit("vertices", vertices_, source_.limits.max_vertices);
   }
   mesh_.positions.push_back(Vec3(mesh_.positions[vertex]));
+  if (vertex < mesh_.colors.size()) {
+    mesh_.colors.resize(mesh_.positions.size() - 1, kNoColour);
+    mesh_.colors.push_back(Rgb(mesh_.colors[vertex]));
+  }
   return absl::OkStatus();
 }
 
@@ -55,6 +59,27 @@ void MeshBuilder::set_normal(uint32_t vertex, const Double3& normal) {
     mesh_.normals[vertex] = to_float(normal);
   } else {
     ++bad_normals_;
+  }
+}
+
+void MeshBuilder::set_colour(uint32_t vertex, const Double3& colour) {
+  if (mesh_.colors.size() <= vertex) mesh_.colors.resize(size_t{vertex} + 1, kNoColour);
+  if (fits_float(colour[0]) && fits_float(colour[1]) && fits_float(colour[2])) {
+    const auto [r, g, b] = to_float(colour);
+    mesh_.colors[vertex] = {r, g, b};
+  } else {
+    ++bad_colours_;
+  }
+}
+
+void MeshBuilder::set_texture_coordinate(uint32_t vertex, double u, double v_from_below) {
+  auto& coordinates = mesh_.texture_coordinates;
+  if (coordinates.size() <= vertex) coordinates.resize(size_t{vertex} + 1);
+  const double v = 1 - v_from_below;
+  if (fits_float(u) && fits_float(v)) {
+    coordinates[vertex] = {static_cast<float>(u), static_cast<float>(v)};
+  } else {
+    ++bad_texture_coordinates_;
   }
 }
 
@@ -107,6 +132,11 @@ absl::Status MeshBuilder::end_mesh(std::string_view name) {
     return source_.over_limit("meshes", file_.meshes.size() + 1, source_.limits.max_nodes);
   }
   if (!mesh.normals.empty()) mesh.normals.resize(mesh.positions.size());
+  if (!mesh.texture_coordinates.empty()) mesh.texture_coordinates.resize(mesh.positions.size());
+  if (!mesh.colors.empty()) {
+    mesh.colors.resize(mesh.positions.size(), kNoColour);
+    make_linear(mesh.colors, colour_coding_);
+  }
   mesh.name = tidy_name(name);
   file_.meshes.push_back(std::move(mesh));
   return absl::OkStatus();
@@ -116,6 +146,10 @@ absl::StatusOr<LoadedFile> MeshBuilder::finish() {
   if (file_.meshes.empty()) return nothing_to_render(source_, vertices_);
   if (degenerate_ > 0) warn(fmt::format("left out: {} faces with fewer than three different corners", degenerate_));
   if (bad_normals_ > 0) warn(fmt::format("left out: {} normals that are not finite", bad_normals_));
+  if (bad_colours_ > 0) warn(fmt::format("left out: {} colours that are not finite", bad_colours_));
+  if (bad_texture_coordinates_ > 0) {
+    warn(fmt::format("left out: {} texture coordinates that are not finite", bad_texture_coordinates_));
+  }
   if (splitter_.fanned() > 0) {
     warn(fmt::format("{} concave polygons were split as fans: self-intersecting or of more than {} corners",
                      splitter_.fanned(), PolygonSplitter::kMostClippedCorners));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "readers/colour.h"
 #include "readers/polygon.h"
 #include "readers/source.h"
 
@@ -29,11 +30,21 @@ class MeshBuilder {
   /// Positions beyond the range of float are refused as the infinite ones are.
   absl::Status add_vertex(const Double3& position, Place place);
 
-  /// A copy of an earlier vertex.
+  /// A copy of an earlier vertex, with its colour.
   absl::Status repeat_vertex(uint32_t vertex);
 
   /// The normal of a vertex, (0, 0, 0) for those without; one that is not finite counts as none.
   void set_normal(uint32_t vertex, const Double3& normal);
+
+  /// The colour of a vertex, as the file codes it; one that is not finite counts as none.
+  void set_colour(uint32_t vertex, const Double3& colour);
+
+  /// What set_colour() was given, for the mesh that ends next.
+  void code_colours(ColourCoding coding) { colour_coding_ = coding; }
+
+  /// The texture coordinate of a vertex, v counted from below as all formats but glTF do; one that is not finite counts
+  /// as none.
+  void set_texture_coordinate(uint32_t vertex, double u, double v_from_below);
 
   /// A polygon of any number of corners; fewer than three different ones in a row and it is dropped.
   absl::Status add_polygon(std::span<const int64_t> corners, Place place);
@@ -65,7 +76,10 @@ class MeshBuilder {
   uint64_t vertices_ = 0;
   uint64_t triangles_ = 0;
   uint64_t degenerate_ = 0;
+  ColourCoding colour_coding_ = ColourCoding::kLinear;
   uint64_t bad_normals_ = 0;
+  uint64_t bad_colours_ = 0;
+  uint64_t bad_texture_coordinates_ = 0;
 };
 
 /// "nothing to render", in the name of `source`: what a file without a triangle is refused with; `why` may be empty.

@@ -1,25 +1,26 @@
 #include "readers/obj.h"
 
+#include <algorithm>
 #include <array>
-#include <charconv>
+#include <span>
 #include <vector>
 
-#include "absl/container/flat_hash_map.h"
 #include "fmt/format.h"
 #include "readers/mesh_builder.h"
+#include "readers/obj_vertices.h"
 #include "readers/text.h"
 
 namespace diaphane::readers {
 namespace {
 
-constexpr std::string_view kPassedOver[] = {"vt",     "vp",     "g",   "o",          "s",
-                                            "mg",     "p",      "l",   "mtllib",     "usemtl",
-                                            "usemap", "maplib", "lod", "shadow_obj", "trace_obj"};
+constexpr std::string_view kPassedOver[] = {"vp",     "g",      "o",      "s",      "mg",  "p",          "l",
+                                            "mtllib", "usemtl", "usemap", "maplib", "lod", "shadow_obj", "trace_obj"};
 
 // Two passes, so that faces may come before what they refer to: values first, then faces.
 class ObjReader {
  public:
-  ObjReader(std::string_view text, const Source& source) : text_(text), source_(source), builder_(source) {}
+  ObjReader(std::string_view text, const Source& source)
+      : text_(text), source_(source), builder_(source), vertices_(normals_, textures_, builder_) {}
 
   absl::StatusOr<LoadedFile> read() {
     for (const bool faces : {false, true}) {
@@ -31,6 +32,7 @@ class ObjReader {
                                 first_skipped_, to_string(first_skipped_at_)));
     }
     const uint64_t vertices = builder_.vertex_count();
+    builder_.code_colours(ColourCoding::kSrgbOrBytes);
     const absl::Status status = builder_.end_mesh("");
     if (!status.ok()) return status;
     absl::StatusOr<LoadedFile> file = builder_.finish();
@@ -45,7 +47,7 @@ class ObjReader {
   absl::Status pass(bool faces) {
     LineReader lines(text_);
     std::string_view rest;
-    positions_so_far_ = normals_so_far_ = 0;
+    positions_so_far_ = textures_so_far_ = normals_so_far_ = 0;
     while (lines.next(rest, true)) {
       place_ = lines.place();
       const std::string_view keyword = next_token(rest);
@@ -56,6 +58,9 @@ class ObjReader {
       } else if (keyword == "vn") {
         ++normals_so_far_;
         if (!faces) status = read_normal(rest);
+      } else if (keyword == "vt") {
+        ++textures_so_far_;
+        if (!faces) status = read_texture_coordinate(rest);
       } else if (faces && (keyword == "f" || keyword == "fo")) {
         status = read_face(rest);
       } else if (!faces) {
@@ -77,75 +82,100 @@ class ObjReader {
     }
   }
 
-  absl::Status read_three(std::string_view rest, std::string_view what, Double3& value) {
-    for (double& number : value) {
+  // Numbers up to the end of the line, at least `required`; those that are missing beyond stay as they are.
+  absl::Status read_numbers(std::string_view& rest, std::string_view what, size_t required, std::span<double> numbers) {
+    for (size_t i = 0; i < numbers.size(); ++i) {
       const std::string_view token = next_token(rest);
-      if (token.empty()) return source_.malformed(fmt::format("{} ends early", what), place_, "must have 3 numbers");
-      if (!parse_number(token, number)) {
+      if (token.empty() && i >= required) break;
+      if (token.empty()) {
+        return source_.malformed(fmt::format("{} ends early", what), place_,
+                                 fmt::format("must have {} numbers", required));
+      }
+      if (!parse_number(token, numbers[i])) {
         return source_.malformed(fmt::format("{} {}", what, in_quotes(token)), place_, "must be a number");
       }
     }
     return absl::OkStatus();
   }
 
-  // A weight or a colour may follow; neither is read.
+  // Three more numbers are a colour, one more is a weight, four are both.
   absl::Status read_position(std::string_view rest) {
     Double3 position;
-    const absl::Status status = read_three(rest, "position", position);
-    return status.ok() ? builder_.add_vertex(position, place_) : status;
+    absl::Status status = read_numbers(rest, "position", position.size(), position);
+    if (status.ok()) status = builder_.add_vertex(position, place_);
+    if (!status.ok()) return status;
+    Double3 colour;
+    std::array<double, 4> more;
+    size_t count = 0;
+    while (count < more.size() && parse_number(next_token(rest), more[count])) ++count;
+    if (count < colour.size()) return absl::OkStatus();
+    std::copy(more.begin() + static_cast<std::ptrdiff_t>(count - colour.size()),
+              more.begin() + static_cast<std::ptrdiff_t>(count), colour.begin());
+    builder_.set_colour(static_cast<uint32_t>(builder_.vertex_count() - 1), colour);
+    return absl::OkStatus();
   }
 
   absl::Status read_normal(std::string_view rest) {
     if (normals_.size() >= source_.limits.max_vertices) {
       return source_.over_limit("normals", normals_.size() + 1, source_.limits.max_vertices);
     }
-    return read_three(rest, "normal", normals_.emplace_back());
+    return read_numbers(rest, "normal", 3, normals_.emplace_back());
+  }
+
+  absl::Status read_texture_coordinate(std::string_view rest) {
+    if (textures_.size() >= source_.limits.max_vertices) {
+      return source_.over_limit("texture coordinates", textures_.size() + 1, source_.limits.max_vertices);
+    }
+    std::array<double, 2> uv{};
+    const absl::Status status = read_numbers(rest, "texture coordinate", 1, uv);
+    textures_.push_back({uv[0], uv[1]});
+    return status;
   }
 
   absl::Status read_face(std::string_view rest) {
     corners_.clear();
-    if (position_count_ < 0) start_faces();
+    if (position_count_ < 0) position_count_ = static_cast<int64_t>(builder_.vertex_count());
     for (std::string_view token = next_token(rest); !token.empty(); token = next_token(rest)) {
-      int64_t position = 0, normal = 0;
-      if (!split_corner(token, position, normal)) {
+      std::array<int64_t, 3> indices{};
+      if (!split_corner(token, indices)) {
         return source_.malformed(fmt::format("face corner {}", in_quotes(token)), place_,
                                  "must be v, v/vt, v//vn or v/vt/vn");
       }
+      auto& [position, texture, normal] = indices;
       absl::Status status = resolve("vertex index", positions_so_far_, position_count_, position);
-      if (status.ok() && normal != 0) {
-        status = resolve("normal index", normals_so_far_, static_cast<int64_t>(normals_.size()), normal);
-      } else {
-        normal = -1;
+      if (status.ok()) {
+        status = resolve_optional("texture coordinate index", textures_so_far_, textures_.size(), texture);
       }
-      if (status.ok() && normal >= 0) status = vertex_with_normal(static_cast<int32_t>(normal), position);
+      if (status.ok()) status = resolve_optional("normal index", normals_so_far_, normals_.size(), normal);
       if (status.ok()) status = builder_.check_corner_count(corners_.size() + 1);
       if (!status.ok()) return status;
-      corners_.push_back(position);
+      const absl::StatusOr<uint32_t> vertex = vertices_.vertex_of(
+          {static_cast<uint32_t>(position), static_cast<int32_t>(texture), static_cast<int32_t>(normal)});
+      if (!vertex.ok()) return vertex.status();
+      corners_.push_back(*vertex);
     }
     return builder_.add_polygon(corners_, place_);
   }
 
-  void start_faces() {
-    position_count_ = static_cast<int64_t>(builder_.vertex_count());
-    if (!normals_.empty()) normal_of_vertex_.assign(builder_.vertex_count(), -1);
+  // "v", "v/vt", "v//vn", "v/vt/vn"; what is not there stays 0, which is no index.
+  static bool split_corner(std::string_view token, std::array<int64_t, 3>& indices) {
+    for (size_t part = 0; part < indices.size(); ++part) {
+      const size_t slash = token.find('/');
+      const std::string_view text = token.substr(0, slash);
+      const bool left_out = part > 0 && text.empty();
+      // An explicit 0 is as wrong for what may be left out as for a position.
+      if (!left_out && (!parse_integer(text, indices[part]) || (part > 0 && indices[part] == 0))) return false;
+      if (slash == std::string_view::npos) return true;
+      token.remove_prefix(slash + 1);
+    }
+    return false;
   }
 
-  // "v", "v/vt", "v//vn", "v/vt/vn"; `normal` stays 0 where there is none.
-  static bool split_corner(std::string_view token, int64_t& position, int64_t& normal) {
-    std::array<std::string_view, 3> parts;
-    size_t count = 0;
-    while (true) {
-      const size_t slash = token.find('/');
-      parts[count++] = token.substr(0, slash);
-      if (slash == std::string_view::npos) break;
-      token.remove_prefix(slash + 1);
-      if (count == parts.size()) return false;
-    }
-    int64_t ignored = 0;
-    if (!parse_integer(parts[0], position)) return false;
-    if (!parts[1].empty() && !parse_integer(parts[1], ignored)) return false;
-    // An explicit index 0 is as wrong for a normal as for a position.
-    return parts[2].empty() || (parse_integer(parts[2], normal) && normal != 0);
+  // resolve(), and -1 for what is not there.
+  absl::Status resolve_optional(std::string_view what, int64_t so_far, size_t count, int64_t& index) const {
+    if (index != 0) return resolve(what, so_far, static_cast<int64_t>(count), index);
+    index = -1;
+    return absl::OkStatus();
   }
 
   // From a file's index (1 is the first, -1 the latest so far) to one from 0.
@@ -160,33 +190,17 @@ class ObjReader {
     return absl::OkStatus();
   }
 
-  // The vertex at `position` that has `normal`: the first normal takes the vertex itself, others get copies.
-  absl::Status vertex_with_normal(int32_t normal, int64_t& position) {
-    const auto vertex = static_cast<uint32_t>(position);
-    if (normal_of_vertex_[vertex] < 0) {
-      normal_of_vertex_[vertex] = normal;
-      builder_.set_normal(vertex, normals_[static_cast<size_t>(normal)]);
-    }
-    if (normal_of_vertex_[vertex] == normal) return absl::OkStatus();
-    const auto [entry, is_new] =
-        copies_.try_emplace({vertex, static_cast<uint32_t>(normal)}, static_cast<uint32_t>(builder_.vertex_count()));
-    position = entry->second;
-    if (!is_new) return absl::OkStatus();
-    const absl::Status status = builder_.repeat_vertex(vertex);
-    if (status.ok()) builder_.set_normal(entry->second, normals_[static_cast<size_t>(normal)]);
-    return status;
-  }
-
   std::string_view text_;
   const Source& source_;
   MeshBuilder builder_;
   std::vector<Double3> normals_;
-  std::vector<int32_t> normal_of_vertex_;
-  absl::flat_hash_map<std::array<uint32_t, 2>, uint32_t> copies_;
+  std::vector<ObjTextureCoordinate> textures_;
+  ObjVertices vertices_;
   std::vector<int64_t> corners_;
   Place place_{"line", 0};
   int64_t position_count_ = -1;
   int64_t positions_so_far_ = 0;
+  int64_t textures_so_far_ = 0;
   int64_t normals_so_far_ = 0;
   uint64_t skipped_ = 0;
   std::string first_skipped_;

@@ -1,5 +1,6 @@
 #include "readers/off.h"
 
+#include <array>
 #include <vector>
 
 #include "fmt/format.h"
@@ -13,6 +14,8 @@ namespace {
 struct Keyword {
   bool is_off = false;
   bool normals = false;
+  bool colours = false;
+  bool texture_coordinates = false;
   bool other_dimension = false;
   size_t length = 0;  // some files write the first count right behind the keyword
 };
@@ -25,8 +28,8 @@ Keyword parse_keyword(std::string_view token) {
     if (has) rest.remove_prefix(prefix.size());
     return has;
   };
-  take("ST");
-  take("C");
+  keyword.texture_coordinates = take("ST");
+  keyword.colours = take("C");
   keyword.normals = take("N");
   keyword.other_dimension = take("4");
   keyword.other_dimension |= take("n");
@@ -44,6 +47,7 @@ class OffReader {
     absl::Status status = read_header();
     for (uint64_t i = 0; i < vertices_ && status.ok(); ++i) status = read_vertex(static_cast<uint32_t>(i));
     for (uint64_t i = 0; i < faces_ && status.ok(); ++i) status = read_face();
+    builder_.code_colours(ColourCoding::kSrgbOrBytes);
     if (status.ok()) status = builder_.end_mesh("");
     if (!status.ok()) return status;
     return builder_.finish();
@@ -120,10 +124,32 @@ class OffReader {
     Double3 position, normal;
     absl::Status status = read_three(rest, "position", position);
     if (status.ok()) status = builder_.add_vertex(position, lines_.place());
-    if (!status.ok() || !keyword_.normals) return status;
-    status = read_three(rest, "normal", normal);
-    if (status.ok()) builder_.set_normal(vertex, normal);
-    return status;
+    if (!status.ok()) return status;
+    if (keyword_.normals) {
+      status = read_three(rest, "normal", normal);
+      if (!status.ok()) return status;
+      builder_.set_normal(vertex, normal);
+    }
+    return keyword_.colours || keyword_.texture_coordinates ? read_looks(rest, vertex) : absl::OkStatus();
+  }
+
+  // "r g b", "r g b a", "s t", or one of the former and the latter: files differ in whether there is an alpha.
+  absl::Status read_looks(std::string_view rest, uint32_t vertex) {
+    std::array<double, 6> values;
+    size_t count = 0;
+    while (count < values.size() && parse_number(next_token(rest), values[count])) ++count;
+    const size_t coordinates = keyword_.texture_coordinates ? 2 : 0;
+    const size_t least = (keyword_.colours ? 3 : 0) + coordinates;
+    if (count < least) {
+      return source_.malformed(fmt::format("{} numbers after position and normal", count), lines_.place(),
+                               fmt::format("must be {} or more", least));
+    }
+    if (keyword_.colours) builder_.set_colour(vertex, {values[0], values[1], values[2]});
+    if (coordinates > 0) {
+      const size_t first = keyword_.colours ? count - coordinates : 0;
+      builder_.set_texture_coordinate(vertex, values[first], values[first + 1]);
+    }
+    return absl::OkStatus();
   }
 
   absl::Status read_face() {

@@ -11,9 +11,9 @@ namespace diaphane::readers {
 /// Whether `text` begins with an OFF keyword (OFF, COFF, NOFF, CNOFF, STOFF, ...).
 bool looks_like_off(std::string_view text);
 
-/// Reads positions, normals (NOFF) and faces; one mesh. One vertex or face per line. Colours and texture coordinates
-/// are passed over. kUnimplemented: 4OFF and nOFF (points of other dimensions) and binary OFF. Errors:
-/// read_mesh_file().
+/// Reads positions, normals (N), colours (C), texture coordinates (ST) and faces; one mesh. One vertex or face per
+/// line. Colours of faces are passed over. kUnimplemented: 4OFF and nOFF (points of other dimensions) and binary OFF.
+/// Errors: read_mesh_file().
 absl::StatusOr<LoadedFile> read_off(std::string_view text, const Source& source);
 
 }  // namespace diaphane::readers

@@ -165,33 +165,59 @@ class PlyReader {
   }
 
   absl::Status read_vertices(const PlyElement& element) {
-    std::array<int, 3> position, normal;
-    static constexpr std::string_view kPosition[] = {"x", "y", "z"}, kNormal[] = {"nx", "ny", "nz"};
+    static constexpr std::string_view kPosition[] = {"x", "y", "z"};
+    const Columns<3> position = element.find_plain(kPosition);
     for (size_t axis = 0; axis < 3; ++axis) {
-      position[axis] = element.find(kPosition[axis]);
-      normal[axis] = element.find(kNormal[axis]);
-      if (position[axis] < 0 || element.properties[static_cast<size_t>(position[axis])].is_list) {
+      if (position[axis] < 0) {
         return source_.malformed(fmt::format("element vertex has no plain property {}", kPosition[axis]),
                                  "in the header");
       }
     }
-    const auto is_plain = [&](int i) { return i >= 0 && !element.properties[static_cast<size_t>(i)].is_list; };
-    const bool has_normals = std::all_of(normal.begin(), normal.end(), is_plain);
+    const Columns<3> normal = element.find_plain({"nx", "ny", "nz"});
+    const Columns<3> colour = element.find_plain({"red", "green", "blue"});
+    const double colour_scale = find_colour_scale(element, colour);
+    Columns<2> texture = element.find_plain({"s", "t"});
+    if (!are_all(texture)) texture = element.find_plain({"u", "v"});
+    if (!are_all(texture)) texture = element.find_plain({"texture_u", "texture_v"});
+
     absl::Status status = builder_.expect(element.count, 0);
     if (!status.ok()) return status;
-    const auto three = [this](const std::array<int, 3>& at) {
-      return Double3{row_[static_cast<size_t>(at[0])], row_[static_cast<size_t>(at[1])],
-                     row_[static_cast<size_t>(at[2])]};
+    const auto three = [this](const Columns<3>& at, double scale = 1) {
+      return Double3{scale * row_[static_cast<size_t>(at[0])], scale * row_[static_cast<size_t>(at[1])],
+                     scale * row_[static_cast<size_t>(at[2])]};
     };
     for (uint64_t i = 0; i < element.count; ++i) {
       const Place place = values_.next_place();
       status = read_row(element, -1);
       if (status.ok()) status = builder_.add_vertex(three(position), place);
       if (!status.ok()) return status;
-      if (has_normals) builder_.set_normal(static_cast<uint32_t>(i), three(normal));
+      const auto vertex = static_cast<uint32_t>(i);
+      if (are_all(normal)) builder_.set_normal(vertex, three(normal));
+      if (are_all(colour)) builder_.set_colour(vertex, three(colour, colour_scale));
+      if (are_all(texture)) {
+        builder_.set_texture_coordinate(vertex, row_[static_cast<size_t>(texture[0])],
+                                        row_[static_cast<size_t>(texture[1])]);
+      }
     }
     has_vertices_ = true;
     return absl::OkStatus();
+  }
+
+  template <size_t count>
+  using Columns = std::array<int, count>;
+
+  template <size_t count>
+  static bool are_all(const Columns<count>& columns) {
+    return std::all_of(columns.begin(), columns.end(), [](int column) { return column >= 0; });
+  }
+
+  // Integers are sRGB over their type's range, floating-point numbers are linear already.
+  double find_colour_scale(const PlyElement& element, const Columns<3>& colour) {
+    if (!are_all(colour)) return 1;
+    const PlyType type = element.properties[static_cast<size_t>(colour[0])].type;
+    if (!is_integer(type)) return 1;
+    builder_.code_colours(ColourCoding::kSrgb);
+    return 1 / largest_of(type);
   }
 
   absl::Status read_others(const PlyElement& element) {

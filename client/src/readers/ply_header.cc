@@ -1,5 +1,6 @@
 #include "readers/ply_header.h"
 
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -202,6 +203,11 @@ size_t size_of(PlyType type) {
 }
 
 bool is_integer(PlyType type) { return type != PlyType::kFloat32 && type != PlyType::kFloat64; }
+
+double largest_of(PlyType type) {
+  const bool is_signed = type == PlyType::kInt8 || type == PlyType::kInt16 || type == PlyType::kInt32;
+  return std::exp2(8.0 * static_cast<double>(size_of(type)) - (is_signed ? 1 : 0)) - 1;
+}
 
 int PlyElement::find(std::string_view property) const {
   for (size_t i = 0; i < properties.size(); ++i) {

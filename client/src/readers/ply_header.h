@@ -1,6 +1,7 @@
 // The header of a PLY file: which values follow it, in which order and form.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,8 @@ enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, 
 
 size_t size_of(PlyType type);
 bool is_integer(PlyType type);
+/// The largest value of an integer type.
+double largest_of(PlyType type);
 
 struct PlyProperty {
   std::string_view name;
@@ -29,6 +32,17 @@ struct PlyElement {
 
   /// The property called `property`, or -1.
   int find(std::string_view property) const;
+
+  /// The same for several; lists count as none.
+  template <size_t count>
+  std::array<int, count> find_plain(const std::string_view (&names)[count]) const {
+    std::array<int, count> found;
+    for (size_t i = 0; i < count; ++i) {
+      found[i] = find(names[i]);
+      if (found[i] >= 0 && properties[static_cast<size_t>(found[i])].is_list) found[i] = -1;
+    }
+    return found;
+  }
 };
 
 enum class PlyFormat { kAscii, kLittleEndian, kBigEndian };

@@ -278,6 +278,42 @@ TEST(GltfReader, ReadsNormals) {
   EXPECT_THAT(message(gltf.read()), HasSubstr("2 elements, accessor 2, must be 3"));
 }
 
+TEST(GltfReader, ReadsColoursOfEveryForm) {
+  const std::string bytes("\xff\x33\x00\xff\xff\x33\x00\xff\xff\x33\x00\xff", 12);
+  const std::string shorts = raw(uint16_t{65535}) + raw(uint16_t{13107}) + raw(uint16_t{0}) + raw(uint16_t{0});
+  for (const bool alpha : {false, true}) {
+    Gltf floats;
+    floats.primitive()["attributes"]["COLOR_0"] =
+        alpha ? floats.add_accessor(Gltf::positions({1, 0.2f, 0, 1, 1, 0.2f, 0, 1, 1, 0.2f, 0, 1}), kFloat, "VEC4", 3)
+              : floats.add_accessor(Gltf::positions({1, 0.2f, 0, 1, 0.2f, 0, 2, 0.2f, -1}), kFloat, "VEC3", 3);
+    const auto file = floats.read();
+    ASSERT_TRUE(file.ok()) << file.status();
+    EXPECT_THAT(file->meshes[0].colors, ElementsAre(Rgb{1, 0.2f, 0}, Rgb{1, 0.2f, 0}, Rgb{1, 0.2f, 0})) << alpha;
+  }
+  const auto read = [](const std::string& colours, int component, bool normalized) {
+    Gltf gltf;
+    gltf.primitive()["attributes"]["COLOR_0"] = gltf.add_accessor(colours, component, "VEC4", 3, normalized);
+    return gltf.read();
+  };
+  EXPECT_EQ(read(bytes, kUnsignedByte, true)->meshes[0].colors.at(2), (Rgb{1, 0.2f, 0}));
+  EXPECT_EQ(read(shorts + shorts + shorts, kUnsignedShort, true)->meshes[0].colors.at(1), (Rgb{1, 0.2f, 0}));
+  EXPECT_THAT(message(read(bytes, kUnsignedByte, false)),
+              HasSubstr("accessor 2, must be VEC3 or VEC4 of floats or of normalised"));
+}
+
+TEST(GltfReader, ReadsTextureCoordinatesAsTheyAre) {
+  Gltf gltf;
+  gltf.primitive()["attributes"]["TEXCOORD_0"] =
+      gltf.add_accessor(Gltf::positions({0, 0, 0.25f, 2, NAN, 1}), kFloat, "VEC2", 3);
+  auto file = gltf.read();
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_THAT(file->meshes[0].texture_coordinates,
+              ElementsAre(TextureCoordinate{}, TextureCoordinate{0.25f, 2}, TextureCoordinate{}));
+  EXPECT_THAT(file->warnings, ElementsAre("left out: 1 texture coordinates that are not finite"));
+  gltf.accessor(2)["count"] = 2;
+  EXPECT_THAT(message(gltf.read()), HasSubstr("2 elements, accessor 2, must be 3"));
+}
+
 struct Patch {
   const char* pointer;
   const char* value;  // JSON

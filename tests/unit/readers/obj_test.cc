@@ -36,16 +36,60 @@ TEST(ObjReader, TakesFacesBeforeTheirVertices) {
   EXPECT_THAT(file->meshes[0].triangles, ElementsAre(0, 1, 2));
 }
 
-TEST(ObjReader, SplitsVerticesByNormalAndNotByTextureCoordinate) {
+TEST(ObjReader, SplitsVerticesByNormalAndTextureCoordinate) {
   const auto file = read_obj(std::string(kSquare) +
-                             "vt 0 0\nvt 1 1\nvn 0 0 1\nvn 1 0 0\n"
-                             "f 1/1/1 2/2/1 3/1/1\nf 1/2/1 3/2/2 4/1/2\n");
+                             "vt 0 0\nvt 1 0.25\nvn 0 0 1\nvn 1 0 0\n"
+                             "f 1/1/1 2/2/1 3/1/1\nf 1/2/1 3/1/2 4/1/2\nf 1/2/1 2//1 3/1/2\n");
   ASSERT_TRUE(file.ok()) << file.status();
   const MeshData& mesh = file->meshes[0];
-  EXPECT_THAT(mesh.triangles, ElementsAre(0, 1, 2, 0, 4, 3));
-  EXPECT_THAT(mesh.positions, SizeIs(5));
-  EXPECT_EQ(mesh.positions[4], (Vec3{1, 1, 0}));
-  EXPECT_THAT(mesh.normals, ElementsAre(Vec3{0, 0, 1}, Vec3{0, 0, 1}, Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{1, 0, 0}));
+  EXPECT_THAT(mesh.triangles, ElementsAre(0, 1, 2, 4, 5, 3, 4, 1, 5));
+  ASSERT_THAT(mesh.positions, SizeIs(6));
+  EXPECT_EQ(mesh.positions[4], (Vec3{0, 0, 0}));
+  EXPECT_EQ(mesh.positions[5], (Vec3{1, 1, 0}));
+  const Vec3 up{0, 0, 1}, side{1, 0, 0};
+  EXPECT_THAT(mesh.normals, ElementsAre(up, up, up, side, up, side));
+  // Counted from above.
+  const TextureCoordinate first{0, 1}, second{1, 0.75f};
+  EXPECT_THAT(mesh.texture_coordinates, ElementsAre(first, second, first, first, second, first));
+}
+
+TEST(ObjReader, GivesAVertexWhatItsLaterCornersName) {
+  const auto file = read_obj(std::string(kSquare) + "vt 1 0\nvn 0 0 1\nf 1 2 3\nf 1//1 2 3\nf 1/1 3 4\n");
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_THAT(file->meshes[0].positions, SizeIs(4));
+  EXPECT_EQ(file->meshes[0].normals[0], (Vec3{0, 0, 1}));
+  EXPECT_THAT(file->meshes[0].texture_coordinates,
+              ElementsAre(TextureCoordinate{1, 1}, TextureCoordinate{}, TextureCoordinate{}, TextureCoordinate{}));
+}
+
+TEST(ObjReader, ReadsColoursAsSrgb) {
+  const auto file = read_obj("v 0 0 0 1 0.5 0\nv 1 0 0 1.0\nv 0 1 0 1.0 0 1 0.04045\nv 1 1 0 nan 0 0\nf 1 2 3\n");
+  ASSERT_TRUE(file.ok()) << file.status();
+  const std::vector<Rgb>& colors = file->meshes[0].colors;
+  ASSERT_THAT(colors, SizeIs(4));
+  EXPECT_FLOAT_EQ(colors[0].r, 1);
+  EXPECT_NEAR(colors[0].g, 0.21404, 1e-5);  // IEC 61966-2-1 at 0.5
+  EXPECT_EQ(colors[1], (Rgb{1, 1, 1}));     // a weight alone
+  EXPECT_NEAR(colors[2].b, 0.0031308, 1e-7);
+  EXPECT_EQ(colors[3], (Rgb{1, 1, 1}));
+  EXPECT_THAT(file->warnings, ElementsAre("left out: 1 colours that are not finite"));
+}
+
+TEST(ObjReader, ReadsColoursOfBytesWhereOneIsAboveOne) {
+  const auto file = read_obj("v 0 0 0 255 0 0\nv 1 0 0 127.5 1 0\nv 0 1 0 0 0 0\nf 1 2 3\n");
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_FLOAT_EQ(file->meshes[0].colors[0].r, 1);
+  EXPECT_NEAR(file->meshes[0].colors[1].r, 0.21404, 1e-5);
+}
+
+TEST(ObjReader, KeepsColoursOfVerticesThatItCopies) {
+  const auto file = read_obj(
+      "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0 0 0 0\nvn 0 0 1\nvn 1 0 0\n"
+      "f 1//1 2//1 3//1 4//1\nf 3//2 2//2 1//1\n");
+  ASSERT_TRUE(file.ok()) << file.status();
+  const Rgb red{1, 0, 0}, green{0, 1, 0}, blue{0, 0, 1}, black{0, 0, 0};
+  EXPECT_THAT(file->meshes[0].colors, ElementsAre(red, green, blue, black, blue, green));
+  EXPECT_THAT(file->meshes[0].triangles, ElementsAre(0, 1, 2, 0, 2, 3, 4, 5, 0));
 }
 
 TEST(ObjReader, LeavesVerticesWithoutANormalAtZero) {
@@ -101,6 +145,10 @@ INSTANTIATE_TEST_SUITE_P(
                       Refused{"f 1 2 0\n", "vertex index 0, line 5"}, Refused{"f 1 2 -5\n", "vertex index -5, line 5"},
                       Refused{"f 1 2 99999999999999999999\n", "face corner \"99999999999999999999\", line 5"},
                       Refused{"f 1//1 2//1 3//1\n", "normal index 1, line 5, there are none"},
+                      Refused{"f 1/1 2/1 3/1\n", "texture coordinate index 1, line 5, there are none"},
+                      Refused{"vt 0 0\nf 1/0 2/1 3/1\n", "face corner \"1/0\", line 6"},
+                      Refused{"vt x\nf 1 2 3\n", "texture coordinate \"x\", line 5, must be a number"},
+                      Refused{"vt\nf 1 2 3\n", "texture coordinate ends early, line 5, must have 1 numbers"},
                       Refused{"f 1/1/1/1 2 3\n", "face corner \"1/1/1/1\", line 5"},
                       Refused{"f 1x 2 3\n", "face corner \"1x\", line 5"},
                       Refused{"v 1 2\nf 1 2 3\n", "position ends early, line 5"},

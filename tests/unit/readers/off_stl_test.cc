@@ -22,6 +22,20 @@ TEST(OffReader, ReadsPolygonsAndPassesOverColours) {
   EXPECT_THAT(file->meshes[0].triangles, ElementsAre(0, 1, 2, 0, 2, 3, 0, 2, 3));
 }
 
+TEST(OffReader, ReadsColoursWithAndWithoutAlphaAndTextureCoordinates) {
+  const auto bytes = read_off("COFF\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 0 255 0 255\n0 1 0 0 0 0\n3 0 1 2\n");
+  ASSERT_TRUE(bytes.ok()) << bytes.status();
+  EXPECT_THAT(bytes->meshes[0].colors, ElementsAre(Rgb{1, 0, 0}, Rgb{0, 1, 0}, Rgb{0, 0, 0}));
+  const auto floats = read_off(
+      "STCNOFF\n3 1 0\n0 0 0 0 0 1 1 0.5 0 1 0.25 1\n1 0 0 0 0 1 0 0 0 0.5 0\n0 1 0 0 0 1 0 0 0 1 0 0\n3 0 1 2\n");
+  ASSERT_TRUE(floats.ok()) << floats.status();
+  EXPECT_NEAR(floats->meshes[0].colors[0].g, 0.21404, 1e-5);
+  EXPECT_THAT(floats->meshes[0].texture_coordinates,
+              ElementsAre(TextureCoordinate{0.25f, 0}, TextureCoordinate{0.5f, 1}, TextureCoordinate{0, 1}));
+  EXPECT_THAT(message(read_off("COFF\n3 1 0\n0 0 0 1 0\n1 0 0\n0 1 0\n3 0 1 2\n")),
+              HasSubstr("2 numbers after position and normal, line 3, must be 3 or more"));
+}
+
 TEST(OffReader, ReadsNormalsBeforeColours) {
   const auto file = read_off("CNOFF 3 1 0\n0 0 0 0 0 1 9 9 9 9\n1 0 0 0 0 1 9 9 9 9\n0 1 0 0 1 0 9 9 9 9\n3 0 1 2\n");
   ASSERT_TRUE(file.ok()) << file.status();

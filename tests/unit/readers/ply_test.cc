@@ -63,6 +63,38 @@ TEST(PlyReader, ReadsMixedRowsInEitherByteOrder) {
   }
 }
 
+constexpr char kRows[] = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+
+TEST(PlyReader, ReadsIntegerColoursAsSrgbAndOthersAsLinear) {
+  const auto coloured = [](const std::string& type, const std::string& r, const std::string& g, const std::string& b) {
+    const std::string properties =
+        "property " + type + " red\nproperty " + type + " green\nproperty " + type + " blue\n";
+    const std::string colour = " " + r + " " + g + " " + b + "\n";
+    const auto file = read_ply(header("ascii", kRows + properties + kFaces) + "0 0 0" + colour + "1 0 0" + colour +
+                               "0 1 0" + colour + "3 0 1 2\n");
+    EXPECT_TRUE(file.ok()) << file.status();
+    return file.ok() && file->meshes[0].colors.size() == 3 ? file->meshes[0].colors[2] : Rgb{};
+  };
+  const Rgb from_bytes = coloured("uchar", "255", "188", "0");
+  EXPECT_FLOAT_EQ(from_bytes.r, 1);
+  EXPECT_NEAR(from_bytes.g, 0.502886, 1e-5);  // IEC 61966-2-1 at 188/255
+  EXPECT_NEAR(coloured("ushort", "65535", "48316", "0").g, 0.502886, 1e-4);
+  EXPECT_EQ(coloured("float", "0.5", "2", "-1"), (Rgb{0.5f, 1, 0}));
+  EXPECT_EQ(coloured("float", "nan", "0", "0"), (Rgb{1, 1, 1}));
+}
+
+TEST(PlyReader, ReadsTextureCoordinatesByTheirUsualNames) {
+  for (const auto& [u, v] : {std::pair{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}}) {
+    const auto file =
+        read_ply(header("ascii", kRows + std::string("property float ") + u + "\nproperty float " + v + "\n" + kFaces) +
+                 "0 0 0 0 1\n1 0 0 0.5 0.25\n0 1 0 inf 0\n3 0 1 2\n");
+    ASSERT_TRUE(file.ok()) << file.status();
+    EXPECT_THAT(file->meshes[0].texture_coordinates,
+                ElementsAre(TextureCoordinate{0, 0}, TextureCoordinate{0.5f, 0.75f}, TextureCoordinate{}));
+    EXPECT_THAT(file->warnings, ElementsAre("left out: 1 texture coordinates that are not finite"));
+  }
+}
+
 TEST(PlyReader, RefusesEveryTruncationOfABinaryFile) {
   const std::string whole = mixed_binary(false);
   for (size_t size = 0; size < whole.size(); ++size) {

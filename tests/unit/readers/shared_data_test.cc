@@ -54,9 +54,38 @@ TEST(SharedMeshes, HaveTheirDocumentedTriangles) {
     EXPECT_EQ(triangle_count(*file), triangles) << name;
     for (const MeshData& mesh : file->meshes) {
       EXPECT_TRUE(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size()) << name;
+      EXPECT_TRUE(mesh.colors.empty() || mesh.colors.size() == mesh.positions.size()) << name;
+      EXPECT_TRUE(mesh.texture_coordinates.empty() || mesh.texture_coordinates.size() == mesh.positions.size()) << name;
       EXPECT_LT(*std::max_element(mesh.triangles.begin(), mesh.triangles.end()), mesh.positions.size()) << name;
     }
   }
+}
+
+// How many positions, colours and texture coordinates.
+std::array<size_t, 3> looks_of(const std::string& name) {
+  const auto file = read_mesh_file(kData / "meshes" / name);
+  EXPECT_TRUE(file.ok()) << file.status();
+  std::array<size_t, 3> counts{};
+  if (!file.ok()) return counts;
+  for (const MeshData& mesh : file->meshes) {
+    counts[0] += mesh.positions.size();
+    counts[1] += mesh.colors.size();
+    counts[2] += mesh.texture_coordinates.size();
+  }
+  return counts;
+}
+
+TEST(SharedMeshes, KeepTheirColoursAndTextureCoordinates) {
+  if (!fs::exists(kData / "meshes")) GTEST_SKIP() << "no " << kData / "meshes";
+  const auto [spot, spot_colours, spot_coordinates] = looks_of("spot_quads.obj");
+  EXPECT_GT(spot, 188u);  // which are split along the seams of the texture
+  EXPECT_EQ(spot_coordinates, spot);
+  EXPECT_EQ(spot_colours, 0u);
+  const auto [skeletons, skeleton_colours, skeleton_coordinates] = looks_of("gltf/RecursiveSkeletons.glb");
+  EXPECT_EQ(skeleton_colours, skeletons);
+  EXPECT_EQ(skeleton_coordinates, 0u);
+  EXPECT_EQ(looks_of("many_small_holes.ply")[1], looks_of("many_small_holes.ply")[0]);
+  EXPECT_EQ(looks_of("gltf/Fox.glb")[2], looks_of("gltf/Fox.glb")[0]);
 }
 
 struct Outcome {

@@ -1,4 +1,5 @@
-// The rules of the contract's own files, as buf's linter has them: names, packages, and a comment where it counts.
+// The rules of the contract's own files, as buf's linter has them by default (but that a call may answer with its
+// resource): names, packages, imports, and a comment where it counts.
 #include <gmock/gmock.h>
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/descriptor.pb.h>
@@ -21,6 +22,8 @@ using google::protobuf::EnumDescriptor;
 using google::protobuf::FileDescriptor;
 using google::protobuf::MethodDescriptor;
 using google::protobuf::ServiceDescriptor;
+using ::testing::Contains;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
@@ -28,6 +31,7 @@ using Complaints = std::vector<std::string>;
 
 bool matches(const std::string& name, const char* pattern) { return std::regex_match(name, std::regex(pattern)); }
 bool is_snake(const std::string& name) { return matches(name, "[a-z][a-z0-9]*(_[a-z0-9]+)*"); }
+bool is_upper_snake(const std::string& name) { return matches(name, "[A-Z][A-Z0-9]*(_[A-Z0-9]+)*"); }
 bool is_pascal(const std::string& name) { return matches(name, "([A-Z][a-z0-9]*)+"); }
 
 // TwoWords -> TWO_WORDS
@@ -54,6 +58,9 @@ class Judge {
  public:
   explicit Judge(const FileDescriptor& file) {
     judge_package(file);
+    expect(file.syntax() == FileDescriptor::SYNTAX_PROTO3, file.name(), "says that it is proto3");
+    expect(file.public_dependency_count() == 0, file.name(), "imports nothing publicly");
+    expect(file.weak_dependency_count() == 0, file.name(), "imports nothing weakly");
     std::set<const Descriptor*> call_types;
     for (int i = 0; i < file.service_count(); ++i) judge(*file.service(i), call_types);
     for (int i = 0; i < file.message_type_count(); ++i) judge(*file.message_type(i), call_types);
@@ -71,6 +78,7 @@ class Judge {
     std::string folder = fs::path(file.name()).parent_path();
     std::replace(folder.begin(), folder.end(), '/', '.');
     expect(matches(file.package(), ".*\\.v[1-9][0-9]*"), file.name(), "the package ends in a version");
+    expect(matches(file.package(), "[a-z0-9_.]+"), file.name(), "the package is lower_snake.case");
     expect(file.package() == folder, file.name(), "the package is the folder");
     expect(is_snake(fs::path(file.name()).stem()), file.name(), "the file's name is snake_case");
   }
@@ -112,9 +120,11 @@ class Judge {
   void judge(const EnumDescriptor& type) {
     expect(is_pascal(type.name()), type.full_name(), "is PascalCase");
     expect(has_comment(type), type.full_name(), "has a comment");
+    expect(!type.options().allow_alias(), type.full_name(), "has no aliases");
     const std::string prefix = upper_snake(type.name()) + "_";
     for (int i = 0; i < type.value_count(); ++i) {
       expect(type.value(i)->name().starts_with(prefix), type.value(i)->full_name(), "starts with " + prefix);
+      expect(is_upper_snake(type.value(i)->name()), type.value(i)->full_name(), "is UPPER_SNAKE_CASE");
     }
     expect(type.value(0)->number() == 0 && type.value(0)->name() == prefix + "UNSPECIFIED", type.full_name(),
            "starts with 0, " + prefix + "UNSPECIFIED");
@@ -122,6 +132,16 @@ class Judge {
 
   Complaints complaints_;
 };
+
+// What the compiler itself warns of: imports that nothing uses.
+Complaints warnings_in(const fs::path& messages) {
+  Complaints warnings;
+  std::ifstream stream(messages);
+  for (std::string line; std::getline(stream, line);) {
+    if (line.find("warning: Import") != std::string::npos) warnings.push_back(line);
+  }
+  return warnings;
+}
 
 // The complaints about every .proto below folder/package; imports are relative to `folder`.
 Complaints judge_files(const fs::path& folder, const std::string& package) {
@@ -134,14 +154,15 @@ Complaints judge_files(const fs::path& folder, const std::string& package) {
       "'" PROTOC "' --include_source_info --include_imports '--descriptor_set_out=" + compiled.string() + "' '-I" +
       folder.string() + "'";
   for (const std::string& file : files) command += " '" + file + "'";
-  if (std::system(command.c_str()) != 0) return {command + ": failed"};
+  const std::string messages = compiled.string() + ".messages";
+  if (std::system((command + " 2> '" + messages + "'").c_str()) != 0) return {command + ": failed, see " + messages};
 
   google::protobuf::FileDescriptorSet set;
   std::ifstream stream(compiled, std::ios::binary);
   if (!set.ParseFromIstream(&stream)) return {compiled.string() + ": cannot be read"};
   google::protobuf::DescriptorPool pool;
   for (const auto& file : set.file()) pool.BuildFile(file);
-  Complaints complaints;
+  Complaints complaints = warnings_in(messages);
   for (const std::string& file : files) {
     const Judge judge(*pool.FindFileByName(file));
     complaints.insert(complaints.end(), judge.complaints().begin(), judge.complaints().end());
@@ -153,8 +174,14 @@ TEST(ContractStyle, IsKeptByEveryProto) {
   EXPECT_THAT(judge_files(fs::path(DIAPHANE_SOURCE_DIR) / "proto", "diaphane"), IsEmpty());
 }
 
-TEST(ContractStyle, JudgesNamesPackagesAndComments) {
-  EXPECT_THAT(judge_files(fs::path(DIAPHANE_SOURCE_DIR) / "tests/unit/house/data", "styleless"), SizeIs(16));
+TEST(ContractStyle, JudgesNamesPackagesImportsAndComments) {
+  const Complaints complaints = judge_files(fs::path(DIAPHANE_SOURCE_DIR) / "tests/unit/house/data", "styleless");
+  for (const char* rule : {"Import google/protobuf/empty.proto is unused", "BadNames.proto: imports nothing publicly",
+                           "BadNames.proto: the package is lower_snake.case", "older.proto: says that it is proto3",
+                           "Colour: has no aliases", "red_too: is UPPER_SNAKE_CASE"}) {
+    EXPECT_THAT(complaints, Contains(HasSubstr(rule)));
+  }
+  EXPECT_THAT(complaints, SizeIs(24));
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 # What a root file system's packages weigh, by why they are there: each package counts for the smallest of the roots that
 # need it, so that a root's line says what would go with it.
 #   awk -v base="PACKAGE..." -v roots="PACKAGE..." -f parts.awk < LIST
-# LIST: dpkg-query's ${Package}|${Installed-Size}|${Provides}|${Pre-Depends}, ${Depends}. Prints MB, packages, part.
-BEGIN { FS = "|" }
+# A line of LIST has semicolons between a package's name, its files' bytes, what it provides, and what it depends on. Prints MB (10⁶).
+BEGIN { FS = ";" }
 {
-  size[$1] = $2
+  bytes[$1] = $2
   provider[$1] = $1
   needs[$1] = $4
   for (i = split($3, names, /, */); i > 0; --i) {
@@ -33,21 +33,21 @@ function reach(package, seen,    clauses, count, choices, i, j, name) {
 }
 
 function weight(set,    name, sum) {
-  for (name in set) if (!(name in counted)) sum += size[name]
+  for (name in set) if (!(name in counted)) sum += bytes[name]
   return sum
 }
 
 # Counts what is in `set` and was not yet counted, and prints a line of it.
 function count_part(set, title,    name, sum, packages) {
   for (name in set) {
-    if (name in counted || !(name in size)) continue
+    if (name in counted || !(name in bytes)) continue
     counted[name] = 1
-    sum += size[name]
+    sum += bytes[name]
     ++packages
   }
   if (!packages) return
   total += sum
-  printf "%7.1f %8d  %s\n", sum / 1024, packages, title
+  printf "%7.1f %8d  %s\n", sum / 1e6, packages, title
 }
 
 END {
@@ -68,7 +68,7 @@ END {
     count_part(set, waiting[lightest])
     delete waiting[lightest]
   }
-  for (name in size) if (!(name in counted)) rest[name] = 1
+  for (name in bytes) if (!(name in counted)) rest[name] = 1
   count_part(rest, "other packages")
-  printf "%7.1f %8s  all packages\n", total / 1024, ""
+  printf "%7.1f %8s  all packages\n", total / 1e6, ""
 }

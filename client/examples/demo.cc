@@ -2,23 +2,22 @@
 // thin parts glow.
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "CLI/CLI.hpp"
-#include "contact_sheet.h"
+#include "album.h"
 #include "diaphane/client.h"
 #include "diaphane/framing.h"
 #include "diaphane/private_server.h"
 #include "diaphane/readers.h"
 #include "fmt/format.h"
+#include "gallery/morph.h"
 
 namespace {
 
@@ -39,50 +38,6 @@ struct Options {
   std::string size = "512x512";
 };
 
-struct Sphere {
-  Vec3 centre;
-  float radius = 0;
-};
-
-Sphere bounding_sphere(const Bounds& bounds, const std::vector<Vec3>& positions) {
-  Sphere sphere{{(bounds.lowest.x + bounds.highest.x) / 2, (bounds.lowest.y + bounds.highest.y) / 2,
-                 (bounds.lowest.z + bounds.highest.z) / 2}};
-  for (const Vec3& p : positions) {
-    sphere.radius =
-        std::max(sphere.radius, std::hypot(p.x - sphere.centre.x, p.y - sphere.centre.y, p.z - sphere.centre.z));
-  }
-  return sphere;
-}
-
-// p' = mix(p, c + R (p − c)/|p − c|, t)
-std::vector<Vec3> morphed(const std::vector<Vec3>& positions, const Sphere& sphere, float t) {
-  std::vector<Vec3> result;
-  result.reserve(positions.size());
-  const Vec3& c = sphere.centre;
-  for (const Vec3& p : positions) {
-    const float distance = std::hypot(p.x - c.x, p.y - c.y, p.z - c.z);
-    const float scale = distance > 0 ? 1 + t * (sphere.radius / distance - 1) : 1;
-    result.push_back({c.x + scale * (p.x - c.x), c.y + scale * (p.y - c.y), c.z + scale * (p.z - c.z)});
-  }
-  return result;
-}
-
-// The meshes of a file as one, in scene units: the morph is about a common centre.
-MeshData merged(const std::vector<MeshData>& meshes) {
-  MeshData all;
-  for (const MeshData& mesh : meshes) {
-    const auto first = static_cast<uint32_t>(all.positions.size());
-    const auto& m = mesh.scene_from_mesh;
-    for (const Vec3& p : mesh.positions) {
-      all.positions.push_back({m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12],
-                               m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13],
-                               m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]});
-    }
-    for (const uint32_t index : mesh.triangles) all.triangles.push_back(first + index);
-  }
-  return all;
-}
-
 void show_progress(uint32_t done, uint32_t total) {
   if (isatty(STDERR_FILENO) == 0) return;
   const uint32_t filled = 40 * done / total;
@@ -92,24 +47,18 @@ void show_progress(uint32_t done, uint32_t total) {
 
 using Seconds = std::chrono::duration<double>;
 
-absl::Status save(const RenderedFrame& frame, const fs::path& path) {
-  std::ofstream picture(path, std::ios::binary);
-  picture.write(frame.image.data(), static_cast<std::streamsize>(frame.image.size()));
-  if (!picture.flush()) return absl::DataLossError(fmt::format("{}: cannot be written", path.string()));
-  return absl::OkStatus();
-}
-
 absl::Status run(const Options& options) {
   absl::StatusOr<LoadedFile> file = read_mesh_file(options.mesh);
   if (!file.ok()) return file.status();
-  const MeshData mesh = merged(file->meshes);
+  const MeshData mesh = gallery::merged(file->meshes);
   const absl::StatusOr<Bounds> bounds = bounds_of({&mesh, 1});
   if (!bounds.ok()) return bounds.status();
   const float height = bounds->highest.y - bounds->lowest.y;
   if (!(height > 0)) return absl::InvalidArgumentError("the mesh has no height");
   const double millimetres_per_unit = kHeightMm / height;
-  const Sphere sphere = bounding_sphere(*bounds, mesh.positions);
-  const auto& [c, r] = sphere;
+  const absl::StatusOr<gallery::Sphere> sphere = gallery::bounding_sphere(mesh);
+  if (!sphere.ok()) return sphere.status();
+  const auto& [c, r] = *sphere;
 
   RenderOptions render;
   char x = 0;
@@ -158,12 +107,12 @@ absl::Status run(const Options& options) {
     if (const auto frame = scene->render(first); !frame.ok()) return frame.status();
   }
 
-  std::vector<fs::path> paper_pictures;
-  std::vector<fs::path> integral_pictures;
+  absl::StatusOr<examples::Album> album = examples::Album::open(options.folder, render.size);
+  if (!album.ok()) return album.status();
   Seconds integral_seconds{0};
   for (uint32_t i = 0; i < options.frames; ++i) {
     const float t = options.frames > 1 ? static_cast<float>(i) / static_cast<float>(options.frames - 1) : 0;
-    const std::vector<Vec3> positions = morphed(mesh.positions, sphere, t);
+    const std::vector<Vec3> positions = gallery::morphed(mesh.positions, *sphere, t);
     const auto start = std::chrono::steady_clock::now();
     const auto revision = scene->update_positions(*body, positions);
     if (!revision.ok()) return revision.status();
@@ -172,23 +121,16 @@ absl::Status run(const Options& options) {
     integral_seconds += std::chrono::steady_clock::now() - start;
     const absl::StatusOr<RenderedFrame> paper_frame = scene->render(paper);
     if (!paper_frame.ok()) return paper_frame.status();
-    paper_pictures.push_back(options.folder / fmt::format("paper_{:03}.png", i));
-    if (absl::Status saved = save(*paper_frame, paper_pictures.back()); !saved.ok()) return saved;
-    integral_pictures.push_back(options.folder / fmt::format("integral_{:03}.png", i));
-    if (absl::Status saved = save(*integral_frame, integral_pictures.back()); !saved.ok()) return saved;
+    if (absl::Status added = album->add(*integral_frame, *paper_frame); !added.ok()) return added;
     show_progress(i + 1, options.frames);
   }
-
-  const fs::path sheet = options.folder / "contact_sheet.png";
-  const std::string error = examples::write_contact_sheet({integral_pictures, paper_pictures}, 192, sheet);
-  if (!error.empty()) {
-    return absl::DataLossError(fmt::format("{}: {}", sheet.string(), error));
-  }
+  if (absl::Status finished = album->finish(); !finished.ok()) return finished;
+  for (const std::string& note : album->notes()) std::cerr << "diaphane-demo: " << note << "\n";
   std::cout << fmt::format(
-      "{} frames by each technique, and contact_sheet.png (integral above, paper below), in {}: {:.1f} frames per "
-      "second, new "
-      "positions in each\n",
-      options.frames, options.folder.string(), options.frames / integral_seconds.count());
+      "{} frames by each technique, and {} (integral, then paper), in {}: {:.1f} frames per second, new positions in "
+      "each\n",
+      options.frames, fmt::join(album->files(), ", "), options.folder.string(),
+      options.frames / integral_seconds.count());
   return absl::OkStatus();
 }
 

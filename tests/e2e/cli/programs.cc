@@ -14,6 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string in_bin(const std::string& name) { return std::string(DIAPHANE_BIN_DIR) + "/" + name; }
+
 void redirect(const fs::path& path, int descriptor) {
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   dup2(file, descriptor);
@@ -21,9 +23,8 @@ void redirect(const fs::path& path, int descriptor) {
 
 // Starts it with its stdout in .stdout, and stderr where `redirect_stderr` says.
 template <typename Redirect>
-pid_t start(const std::string& name, const fs::path& folder, const std::vector<std::string>& arguments,
+pid_t start(const std::string& program, const fs::path& folder, const std::vector<std::string>& arguments,
             const Redirect& redirect_stderr) {
-  const std::string program = std::string(DIAPHANE_BIN_DIR) + "/" + name;
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
@@ -49,12 +50,16 @@ Finished finish(pid_t child) {
 
 }  // namespace
 
-Finished run_program(const std::string& name, const fs::path& folder, const std::vector<std::string>& arguments) {
+Finished run_command(const std::string& path, const fs::path& folder, const std::vector<std::string>& arguments) {
   const fs::path err = folder / ".stderr";
-  Finished finished = finish(start(name, folder, arguments, [&] { redirect(err, STDERR_FILENO); }));
+  Finished finished = finish(start(path, folder, arguments, [&] { redirect(err, STDERR_FILENO); }));
   finished.out = read_file(folder / ".stdout");
   finished.err = read_file(err);
   return finished;
+}
+
+Finished run_program(const std::string& name, const fs::path& folder, const std::vector<std::string>& arguments) {
+  return run_command(in_bin(name), folder, arguments);
 }
 
 Finished run_diaphane(const fs::path& folder, const std::vector<std::string>& arguments) {
@@ -65,7 +70,7 @@ Finished run_diaphane_on_terminal(const fs::path& folder, const std::vector<std:
   int terminal = -1;
   int program_side = -1;
   if (openpty(&terminal, &program_side, nullptr, nullptr, nullptr) != 0) return {};
-  const pid_t child = start("diaphane", folder, arguments, [&] { dup2(program_side, STDERR_FILENO); });
+  const pid_t child = start(in_bin("diaphane"), folder, arguments, [&] { dup2(program_side, STDERR_FILENO); });
   close(program_side);
   // Reading fails once the program, which holds the other side, has ended.
   std::string err;

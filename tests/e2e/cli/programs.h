@@ -14,6 +14,10 @@ struct Finished {
   long peak_memory_kib = 0;
 };
 
+/// Runs a program, by its path, in `folder` to its end.
+Finished run_command(const std::string& path, const std::filesystem::path& folder,
+                     const std::vector<std::string>& arguments);
+
 /// Runs build/bin/PROGRAM in `folder` to its end.
 Finished run_program(const std::string& name, const std::filesystem::path& folder,
                      const std::vector<std::string>& arguments);

@@ -11,7 +11,7 @@ constexpr Coefficients kRedWax{{0.004f, 0.14f, 0.2f}, {1.3f, 1.15f, 1.05f}, 1.4f
 constexpr Coefficients kWick{{4, 4, 4}, {0.4f, 0.35f, 0.3f}, 1.4f};
 constexpr Rgb kFlame_w_sr{60, 45, 26};
 constexpr float kFlameRadius_mm = 1.2f;
-constexpr float kGlobalGain = 20;
+constexpr float kGlobalGain = 1000;
 
 // On the wall, by height over the foot as a share of the candle's.
 Region wall_between(const CandleShape& shape, float from, float to) {

@@ -32,6 +32,12 @@ absl::StatusOr<Section> figure_terms(const Studio& studio, const FigureOptions& 
           "paper share one exposure. The integral has no terms: light that enters behind comes out in front, and "
           "more of it where there is less in between.",
           kHeight_mm, kHeight_mm, kGlobalGain)};
+  section.paragraphs.push_back(
+      "The hatching on the inner sides of the horns and on the ears is the paper's own: its test for hidden points "
+      "compares "
+      "dot(N, P), and a point that one horn hides from a cube face passes where it happens to lie in the other's "
+      "tangent "
+      "plane.");
   const LinearFrame* of_paper = &frames->at(2);
   const LinearFrame* of_integral = &frames->at(3);
   const double paper_ev = exposure_for({&of_paper, 1});

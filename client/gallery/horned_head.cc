@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kHornLength = 1.3f;
 constexpr float kHornWidth = 0.14f;  // radians, seen from the middle
-constexpr float kHornBend = 0.75f;   // radians, at the tip
+constexpr float kHornBend = 0.35f;   // radians, at the tip
 constexpr float kReach = 0.6f;       // radians around a horn from which vertices are drawn towards it
 constexpr float kHornFrom = 1.45f;   // distance from the middle
 constexpr float kSkullTo = 1.1f;
@@ -33,11 +33,12 @@ struct Feature {
   float width;  // radians
 };
 constexpr Feature kFeatures[] = {
-    {{0.36f, 0.1f, 0.92f}, -0.16f, 0.17f}, {{-0.36f, 0.1f, 0.92f}, -0.16f, 0.17f},  // eyes
-    {{0, -0.12f, 1}, 0.22f, 0.13f},                                                 // nose
-    {{0.34f, 0.36f, 0.87f}, 0.09f, 0.2f},  {{-0.34f, 0.36f, 0.87f}, 0.09f, 0.2f},   // brows
-    {{0, -0.45f, 0.88f}, -0.07f, 0.2f},    {{0, -0.8f, 0.6f}, 0.16f, 0.24f},        // mouth, chin
-    {{1, 0.1f, 0}, 0.42f, 0.14f},          {{-1, 0.1f, 0}, 0.42f, 0.14f}};          // ears
+    {{0.36f, 0.12f, 0.92f}, -0.24f, 0.17f}, {{-0.36f, 0.12f, 0.92f}, -0.24f, 0.17f},  // eyes
+    {{0, -0.16f, 1}, 0.36f, 0.13f},                                                   // nose
+    {{0.32f, 0.42f, 0.87f}, 0.14f, 0.2f},   {{-0.32f, 0.42f, 0.87f}, 0.14f, 0.2f},    // brows
+    {{0.12f, -0.5f, 0.86f}, -0.12f, 0.11f}, {{-0.12f, -0.5f, 0.86f}, -0.12f, 0.11f},  // mouth
+    {{0, -0.85f, 0.6f}, 0.18f, 0.24f},                                                // chin
+    {{1, 0.12f, 0}, 0.42f, 0.14f},          {{-1, 0.12f, 0}, 0.42f, 0.14f}};          // ears
 
 MeshData sphere_of_triangles(int levels) {
   const float g = std::numbers::phi_v<float>;

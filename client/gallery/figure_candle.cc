@@ -38,16 +38,14 @@ absl::StatusOr<Section> figure_candle(const Studio& studio, const FigureOptions&
   Section section{.id = "fig7", .title = "Fig. 7: a candle lit by its flame", .rows = {{}}};
   section.paragraphs = {
       "The paper's red wax candle is lit by one point light, its flame. Wax spreads light widely: the candle glows "
-      "around "
-      "the flame, red, and darkens towards its foot.",
-      "Here the candle is a mesh of this program's own: 38 mm high, the rim molten around a hollow 9 mm deep, with a "
-      "wick "
-      "in it. The flame is a warm point light of 1.2 mm radius above the wick and below the rim, so within the body's "
-      "outline. The flame itself is not drawn. Red wax is ours: σa = (0.004, 0.14, 0.2), σ's = (1.3, 1.15, 1.05) mm⁻¹.",
-      "What counts as light is what enters the surface from outside. By the integral it enters through the hollow, and "
-      "through the wick's shadow less; the outer wall, which faces away from the flame, shows what came through the "
-      "wax. A "
-      "light that stood within the wax itself would enter nowhere, and leave the picture black.",
+      "around the flame, red, and darkens towards its foot.",
+      "Here the candle is a mesh of this program's own: 38 mm high, the rim molten around a hollow 9 mm deep, with "
+      "a wick in it. The flame is a warm point light of 1.2 mm radius above the wick and below the rim, so within "
+      "the body's outline. The flame itself is not drawn. Red wax is ours: σa = (0.004, 0.14, 0.2), σ's = (1.3, "
+      "1.15, 1.05) mm⁻¹.",
+      "What counts as light is what enters the surface from outside. By the integral it enters through the hollow, "
+      "and through the wick's shadow less; the outer wall, which faces away from the flame, shows what came through "
+      "the wax. A light that stood within the wax itself would enter nowhere, and leave the picture black.",
       fmt::format("By paper the wall glows by the global term alone, which takes |N·ω| at the point itself and the "
                   "distance to the flame; it is amplified {} times, and knows nothing of the wax between.",
                   kGlobalGain)};

@@ -37,14 +37,13 @@ absl::StatusOr<Section> figure_kernels(const Studio& studio, const FigureOptions
 
   Section section{.id = "fig6", .title = "Fig. 6: kernels", .rows = {{}, {}}};
   section.paragraphs = {
-      "The paper gathers light with a kernel of N×N texels around each point's place on its cube face, and looks for "
-      "the N from which the picture no longer changes: by the histograms of its pictures, 5×5 and 6×6 are alike.",
+      "The paper gathers light with a kernel of N×N texels around each point's place on its cube face, and looks "
+      "for the N from which the picture no longer changes: by the histograms of its pictures, 5×5 and 6×6 are alike.",
       fmt::format(
           "Here: wax, {} mm high, a lamp on the upper left. The taps of every kernel span the same width, the mean "
-          "free "
-          "path times N·f, so that a larger kernel samples the same light more finely. Below each picture is the "
-          "histogram of its luma, dark to bright; the pictures by paper are developed at {}. The table says how far a "
-          "histogram is from the next: the mean shift, in levels of 255, that makes the one into the other.",
+          "free path times N·f, so that a larger kernel samples the same light more finely. Below each picture is "
+          "the histogram of its luma, dark to bright; the pictures by paper are developed at {}. The table says how "
+          "far a histogram is from the next: the mean shift, in levels of 255, that makes the one into the other.",
           kHeight_mm, stops(paper_ev)),
       fmt::format(
           "At the right is the integral over the whole surface, at {}: what the kernels do not reach, since one "

@@ -22,10 +22,8 @@ absl::StatusOr<Section> figure_materials(const Studio& studio, const FigureOptio
   Section section{.id = "materials", .title = "All presets"};
   section.paragraphs = {
       fmt::format("Every named material on one mesh {} mm high, by the integral, a lamp on the upper left and a weaker "
-                  "one behind, all at "
-                  "one exposure. The measured ones are Jensen, Marschner, Levoy and Hanrahan's (2001); wax and "
-                  "porcelain, which the "
-                  "paper shows without figures, are ours.",
+                  "one behind, all at one exposure. The measured ones are Jensen, Marschner, Levoy and Hanrahan's "
+                  "(2001); wax and porcelain, which the paper shows without figures, are ours.",
                   kHeight_mm)};
   section.facts["names"] = nlohmann::json::array();
   const RenderSettings settings[] = {by_integral()};

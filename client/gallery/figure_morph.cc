@@ -22,15 +22,14 @@ Region at_rest(bool (*region)(const Vec3&), const Sphere& sphere, float t) {
 
 absl::StatusOr<Section> figure_morph(const Studio& studio, const FigureOptions& options) {
   const MeshData head = horned_head(options.head_levels);
-  const absl::StatusOr<Sphere> sphere = bounding_sphere(head);
-  if (!sphere.ok()) return sphere.status();
+  const Sphere sphere = bounding_sphere_around({}, head);
   absl::StatusOr<Still> still = portrait(head, {"skimmilk"}, kHeight_mm, options.size_px);
   if (!still.ok()) return still.status();
-  const auto& [c, r] = *sphere;
+  const auto& [c, r] = sphere;
   // The sphere must fit, and the lamp stand outside it.
   still->camera = frame_camera({{c.x - r, c.y - r, c.z - r}, {c.x + r, c.y + r, c.z + r}}, {.aspect = 1, .fill = 1});
   if (absl::Status lit = add_lamp({0.3f, 0.5f, -1}, 0.75f, &*still); !lit.ok()) return lit;
-  for (const float t : kSteps) still->poses.push_back(morphed(head.positions, *sphere, t));
+  for (const float t : kSteps) still->poses.push_back(morphed(head.positions, sphere, t));
   const RenderSettings settings[] = {by_paper({.global_gain = kGlobalGain}), by_integral()};
   const absl::StatusOr<std::vector<LinearFrame>> frames = studio.shoot(*still, settings);
   if (!frames.ok()) return frames.status();
@@ -38,12 +37,12 @@ absl::StatusOr<Section> figure_morph(const Studio& studio, const FigureOptions& 
   Section section{.id = "fig10", .title = "Fig. 10: a morph, lit from behind", .rows = {{}, {}}};
   section.paragraphs = {
       "The paper turns a highly translucent body into its bounding sphere, lit from behind by a point light: thin "
-      "parts "
-      "stay brighter than thick ones while the shape changes, since nothing was computed beforehand.",
+      "parts stay brighter than thick ones while the shape changes, since nothing was computed beforehand.",
       fmt::format(
           "Here: the horned head in skim milk, {} mm high, the lamp behind. Positions alone were sent for each "
-          "step. Rows: integral, paper (its global term {} times amplified), each at one exposure throughout. The "
-          "table compares the parts that were horns with those that were skull, before they have become the sphere.",
+          "step. Rows: integral, paper (its global term {} times amplified, and red since it grows with the cube of "
+          "a channel's mean free path), each at one exposure throughout. The table compares the parts that were "
+          "horns with those that were skull, before they have become the sphere.",
           kHeight_mm, kGlobalGain)};
   section.table = {{"technique", "step", "horns over skull, mean luminance"}};
   const char* names[] = {"integral", "paper"};
@@ -57,8 +56,8 @@ absl::StatusOr<Section> figure_morph(const Studio& studio, const FigureOptions& 
       section.rows[row].push_back({fmt::format("fig10_{}_{:03}", names[row], percent), developed(frame, ev),
                                    fmt::format("{}, {} %, {}", names[row], percent, stops(ev))});
       if (kSteps[step] == 1) continue;
-      const double ratio = mean_luminance(frame, at_rest(on_horn, *sphere, kSteps[step])) /
-                           mean_luminance(frame, at_rest(on_skull, *sphere, kSteps[step]));
+      const double ratio = mean_luminance(frame, at_rest(on_horn, sphere, kSteps[step])) /
+                           mean_luminance(frame, at_rest(on_skull, sphere, kSteps[step]));
       section.table.push_back({names[row], fmt::format("{} %", percent), fmt::format("{:.1f}", ratio)});
       section.facts["horns_over_skull"][names[row]][fmt::format("{}", percent)] = ratio;
     }

@@ -24,8 +24,7 @@ absl::StatusOr<Section> figure_opaque(const Studio& studio, const FigureOptions&
   Section section{.id = "fig8", .title = "Fig. 8: translucent and opaque", .rows = {{}}};
   section.paragraphs = {
       "The paper sets a translucent body beside one without light inside: what is translucent looks softer, and its "
-      "small "
-      "details are blurred.",
+      "small details are blurred.",
       fmt::format(
           "Here: {} mm high, a lamp on the left, σ's = (2.58, 2.54, 1.6), σa = (0.00162, 0.00053, 0.00024) mm⁻¹. "
           "Those are the figures of the paper's caption with its two columns swapped: as printed, next to nothing "

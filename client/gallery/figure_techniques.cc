@@ -48,12 +48,10 @@ absl::StatusOr<Section> figure_techniques(const Studio& studio, const FigureOpti
   Section section{.id = "techniques", .title = "Techniques and their errors"};
   section.paragraphs = {
       "The reference sums the same dipole over the whole surface at every pixel; it takes seconds to minutes, and "
-      "judges the "
-      "others. No shadows in any of these, and one exposure for all three.",
+      "judges the others. No shadows in any of these, and one exposure for all three.",
       "Errors are differences of radiance in the worst channel, in per cent of the reference's mean in that channel "
-      "over the "
-      "body. The colours run from no error at the left of the scale to the largest that it shows at its right, "
-      "and everything beyond."};
+      "over the body. The colours run from no error at the left of the scale to the largest that it shows at its "
+      "right, and everything beyond."};
   section.table = {{"", "technique", "RMS R, G, B", "99.9th percentile", "largest"}};
   RenderSettings paper = by_paper();
   RenderSettings integral = by_integral();

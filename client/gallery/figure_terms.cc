@@ -23,8 +23,7 @@ absl::StatusOr<Section> figure_terms(const Studio& studio, const FigureOptions& 
   Section section{.id = "fig9", .title = "Fig. 9: local, global, both", .rows = {{}}};
   section.paragraphs = {
       "The paper's demon: with the local term alone the thickness of its horns does not show; the global term makes "
-      "thin "
-      "parts brighter, and the sum looks right.",
+      "thin parts brighter, and the sum looks right.",
       fmt::format(
           "Here: a horned head of this program's own in wax, {} mm high, lit from behind and above. Local light "
           "stays on the side that the lamp sees. The global term of the paper falls with the cube of the distance "
@@ -33,11 +32,9 @@ absl::StatusOr<Section> figure_terms(const Studio& studio, const FigureOptions& 
           "more of it where there is less in between.",
           kHeight_mm, kHeight_mm, kGlobalGain)};
   section.paragraphs.push_back(
-      "The hatching on the inner sides of the horns and on the ears is the paper's own: its test for hidden points "
-      "compares "
-      "dot(N, P), and a point that one horn hides from a cube face passes where it happens to lie in the other's "
-      "tangent "
-      "plane.");
+      "The hatching on the inner sides of the horns, the ears and the face is the paper's own: its test for hidden "
+      "points compares dot(N, P), and a point that is hidden from a cube face passes wherever it happens to lie in "
+      "the tangent plane of what hides it.");
   const LinearFrame* of_paper = &frames->at(2);
   const LinearFrame* of_integral = &frames->at(3);
   const double paper_ev = exposure_for({&of_paper, 1});

@@ -16,11 +16,10 @@ using namespace diaphane::gallery;
 namespace fs = std::filesystem;
 
 constexpr char kIntroduction[] =
-    "What Benmounah, Jolivet and Ghazanfarpour show in \"Real-time rendering of deformable translucent objects\", made "
-    "again by "
-    "their technique (paper) and by the integral over the whole surface (integral), with what was measured. Radiance "
-    "is "
-    "measured on linear frames; exposures only turn them into pictures. `./dev gallery` makes this page.";
+    "What Benmounah, Jolivet and Ghazanfarpour show in \"Real-time rendering of deformable translucent objects\", "
+    "made again by their technique (paper) and by the integral over the whole surface (integral), with what was "
+    "measured. Radiance is measured on linear frames; exposures only turn them into pictures. `./dev gallery` makes "
+    "this page.";
 
 absl::Status run(const fs::path& folder, const fs::path& mesh, const std::string& address, FigureOptions options) {
   const absl::StatusOr<diaphane::LoadedFile> file = diaphane::read_mesh_file(mesh);

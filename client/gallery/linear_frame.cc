@@ -24,7 +24,10 @@ uint8_t srgb(double linear) {
 
 absl::StatusOr<LinearFrame> decode_exr(std::string_view file) {
   OIIO::Filesystem::IOMemReader memory(const_cast<char*>(file.data()), file.size());
-  const auto input = OIIO::ImageInput::open("memory.exr", nullptr, &memory);
+  OIIO::Filesystem::IOProxy* proxy = &memory;
+  OIIO::ImageSpec wanted;
+  wanted.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
+  const auto input = OIIO::ImageInput::open("memory.exr", &wanted);
   if (input == nullptr) return absl::InvalidArgumentError(fmt::format("EXR: {}", OIIO::geterror()));
   const OIIO::ImageSpec spec = input->spec();
   int index[std::size(kChannels)];

@@ -19,9 +19,14 @@ Vec3 scaled_from(const Vec3& p, const Vec3& c, float scale) {
 absl::StatusOr<Sphere> bounding_sphere(const MeshData& mesh) {
   const absl::StatusOr<Bounds> bounds = bounds_of({&mesh, 1});
   if (!bounds.ok()) return bounds.status();
-  Sphere sphere{{(bounds->lowest.x + bounds->highest.x) / 2, (bounds->lowest.y + bounds->highest.y) / 2,
-                 (bounds->lowest.z + bounds->highest.z) / 2}};
-  for (const Vec3& p : mesh.positions) sphere.radius = std::max(sphere.radius, distance(p, sphere.centre));
+  return bounding_sphere_around({(bounds->lowest.x + bounds->highest.x) / 2, (bounds->lowest.y + bounds->highest.y) / 2,
+                                 (bounds->lowest.z + bounds->highest.z) / 2},
+                                mesh);
+}
+
+Sphere bounding_sphere_around(const Vec3& centre, const MeshData& mesh) {
+  Sphere sphere{centre, 0};
+  for (const Vec3& p : mesh.positions) sphere.radius = std::max(sphere.radius, distance(p, centre));
   return sphere;
 }
 

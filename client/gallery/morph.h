@@ -19,6 +19,10 @@ struct Sphere {
 /// Errors: as bounds_of's.
 absl::StatusOr<Sphere> bounding_sphere(const MeshData& mesh);
 
+/// Around a point from which all of the surface is seen, if there is one: the mesh then becomes the sphere without
+/// folds.
+Sphere bounding_sphere_around(const Vec3& centre, const MeshData& mesh);
+
 /// p' = mix(p, c + R (p − c)/|p − c|, t), t in 0..1.
 std::vector<Vec3> morphed(std::span<const Vec3> positions, const Sphere& sphere, float t);
 

@@ -38,10 +38,12 @@ Picture filled(int width_px, int height_px, const Colour& colour) {
 
 absl::StatusOr<Picture> decode_picture(std::string_view file) {
   OIIO::Filesystem::IOMemReader memory(const_cast<char*>(file.data()), file.size());
+  OIIO::Filesystem::IOProxy* proxy = &memory;
   OIIO::ImageSpec wanted;
+  wanted.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
   wanted.attribute("oiio:UnassociatedAlpha", 1);
   const bool png = file.substr(0, 4) == "\x89PNG";
-  const auto input = OIIO::ImageInput::open(png ? "memory.png" : "memory.jpg", &wanted, &memory);
+  const auto input = OIIO::ImageInput::open(png ? "memory.png" : "memory.jpg", &wanted);
   if (input == nullptr) return absl::InvalidArgumentError(fmt::format("picture: {}", OIIO::geterror()));
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.width > kLongestSide_px || spec.height > kLongestSide_px || spec.nchannels < 3) {

@@ -36,7 +36,7 @@ class AnimationWriter {
   virtual std::string encoder() const = 0;
 };
 
-/// An animated WebP, which repeats for ever.
+/// An animated WebP, which repeats for ever. Frames that are the same as the one before are kept as a longer one.
 ///
 /// Errors: INVALID_ARGUMENT names the option and its range.
 absl::StatusOr<std::unique_ptr<AnimationWriter>> open_webp(const std::filesystem::path& path,

@@ -148,8 +148,12 @@ TEST_F(ContactSheet, ShowsWhatRendersAndSaysWhyTheRestDoesNot) {
 class Demo : public CliTest {};
 
 TEST_F(Demo, LeavesAnimationsOfAsManyFramesAsItRendered) {
+  // An octahedron twice as high as wide: a cube would be on its sphere from the first.
+  write_file(folder_ / "spindle.obj",
+             "v 1 0 0\nv -1 0 0\nv 0 2 0\nv 0 -2 0\nv 0 0 1\nv 0 0 -1\n"
+             "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n");
   const Finished finished =
-      run_program("diaphane-demo", folder_, {"cube.obj", "demo", "--frames", "3", "--size", "64x48"});
+      run_program("diaphane-demo", folder_, {"spindle.obj", "demo", "--frames", "3", "--size", "64x48"});
   ASSERT_EQ(finished.exit_code, 0) << finished.err;
   for (const char* technique : {"integral", "paper"}) {
     for (const char* frame : {"000", "001", "002"}) {

@@ -1,9 +1,10 @@
 #include "diffusion/dipole_integral.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <optional>
 
+#include "diffusion/faces.h"
 #include "diffusion/four.h"
 #include "diffusion/gather.h"
 #include "diffusion/kernel_table.h"
@@ -19,30 +20,35 @@ namespace {
 
 constexpr uint32_t kChunk = NodeTree::kChunkSlots;
 
-/// What the vertices of a triangle sum up; eight floats.
-struct Face {
-  glm::vec3 area_vector_mm2{0};
-  float area_mm2 = 0;
-  glm::vec3 weighted{0};  ///< centroid times area; once the light is known, flux to each corner
-  float unused = 0;
-};
+constexpr Four kFirstThree{1, 1, 1, 0};
 
-Face make_face(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-  Face face;
-  face.area_vector_mm2 = 0.5f * glm::cross(b - a, c - a);
-  face.area_mm2 = std::sqrt(glm::dot(face.area_vector_mm2, face.area_vector_mm2));
-  face.weighted = face.area_mm2 * (1.0f / 3) * (a + b + c);
-  return face;
-}
+/// Whether fluxes ≥ 0 (fourth lanes 0) have one colour, to rounding.
+class Colour {
+ public:
+  void add(Four flux) {
+    const Four sum =
+        flux + __builtin_shufflevector(flux, flux, 1, 2, 0, 3) + __builtin_shufflevector(flux, flux, 2, 0, 1, 3);
+    if (share_[3] == 0) {
+      if (sum[0] > 0) share_ = flux / sum[0] + Four{0, 0, 0, 1};
+      return;
+    }
+    const Four expected = share_ * sum, slack = kRounding * sum;
+    mixed_ |= bits_of((flux > expected + slack) | (flux < expected - slack)) != 0;
+  }
+  void add(const Colour& other) {
+    mixed_ |= other.mixed_;
+    add(other.share_ * kFirstThree);
+  }
+  bool mixed() const { return mixed_; }
+
+ private:
+  static constexpr float kRounding = 3e-5f;
+  Four share_{};  ///< of each channel in the first flux that is not black; then the fourth lane is 1
+  bool mixed_ = false;
+};
 
 /// Above this σ·zr in any channel the kernel falls off too fast for the wider openings.
 constexpr float kAbsorbing = 0.3f;
-
-/// Whether two fluxes have one colour, to rounding.
-bool same_colour(const glm::vec3& a, const glm::vec3& b) {
-  const glm::vec3 turned = glm::cross(a, b);
-  return glm::dot(turned, turned) <= 1e-9f * glm::dot(a, a) * glm::dot(b, b);
-}
 
 }  // namespace
 
@@ -67,12 +73,19 @@ struct DipoleIntegral::State {
         tree(topology->slot_count),
         faces(topology->triangles.size()),
         irradiance(topology->slot_count),
-        arena(threads > 0 ? threads : tbb::task_arena::automatic) {}
+        chunk_colours(tree.chunk_count()) {
+    if (threads > 0) arena.emplace(threads);
+  }
 
-  /// Calls work(i) for i below `count`, on the arena's threads.
+  /// Calls work(i) for i below `count`, on the arena's threads. Without one on the caller's: threads that have just
+  /// finished another stage are awake there.
   template <class Work>
   void for_each(uint32_t count, const Work& work) {
-    arena.execute([&] { tbb::parallel_for(uint32_t{0}, count, work); });
+    if (!arena) {
+      tbb::parallel_for(uint32_t{0}, count, work);
+      return;
+    }
+    arena->execute([&] { tbb::parallel_for(uint32_t{0}, count, work); });
   }
 
   glm::vec3 weld_irradiance(uint32_t slot, std::span<const glm::vec3> at_vertices) const;
@@ -82,12 +95,13 @@ struct DipoleIntegral::State {
   std::vector<Face> faces;
   std::vector<glm::vec3> irradiance;  ///< by slot
   std::vector<uint8_t> has_twins;     ///< by slot
+  std::vector<Colour> chunk_colours;
   bool coloured = false;
   optics::Coefficients material;
   KernelSet kernels;
   std::vector<GatherJob> jobs;
   tbb::enumerable_thread_specific<GatherScratch> scratch;
-  tbb::task_arena arena;
+  std::optional<tbb::task_arena> arena;
 };
 
 DipoleIntegral::DipoleIntegral(std::shared_ptr<const SurfaceTopology> topology, int threads)
@@ -104,29 +118,31 @@ void DipoleIntegral::update_positions(std::span<const glm::vec3> positions_mm, s
   const SurfaceTopology& surface = *s.topology;
   const auto triangles = static_cast<uint32_t>(surface.triangles.size());
   s.for_each((triangles + kChunk - 1) / kChunk, [&](uint32_t chunk) {
-    const uint32_t end = std::min((chunk + 1) * kChunk, triangles);
-    for (uint32_t t = chunk * kChunk; t < end; ++t) {
-      const glm::uvec3& v = surface.triangles[t];
-      s.faces[t] = make_face(positions_mm[v.x], positions_mm[v.y], positions_mm[v.z]);
-    }
+    const uint32_t begin = chunk * kChunk, count = std::min(kChunk, triangles - begin);
+    measure_faces(std::span(surface.triangles).subspan(begin, count), positions_mm,
+                  std::span(s.faces).subspan(begin, count));
   });
   s.for_each(s.tree.chunk_count(), [&](uint32_t chunk) {
     const uint32_t end = std::min((chunk + 1) * kChunk, surface.slot_count);
     for (uint32_t slot = chunk * kChunk; slot < end; ++slot) {
-      Four low{}, high{};
+      Four vector_area{}, weighted{};
       for (uint32_t k = surface.first_corner[slot]; k < surface.first_corner[slot + 1]; ++k) {
         const auto* face = reinterpret_cast<const float*>(&s.faces[surface.triangle_of_corner[k]]);
-        low += load4(face);
-        high += load4(face + 4);
+        vector_area += load4(face);
+        weighted += load4(face + 4);
       }
-      const Face sum{{low[0], low[1], low[2]}, low[3], {high[0], high[1], high[2]}, 0};
       const uint32_t vertex = surface.vertex_of_slot[slot];
-      const glm::vec3& position = positions_mm[vertex];
-      s.tree.places[slot] = {position, sum.area_mm2 / 3, sum.area_vector_mm2 / 3.0f};
-      s.tree.sources[slot].position_mm = sum.area_mm2 > 0 ? 0.5f * (position + sum.weighted / sum.area_mm2) : position;
+      const Four position = load3(&positions_mm[vertex].x);
+      const Four third = vector_area * (1.0f / 3);
+      auto* place = reinterpret_cast<float*>(&s.tree.places[slot]);
+      store4(place, __builtin_shufflevector(position, third, 0, 1, 2, 7));
+      store4(place + 4, third * kFirstThree);
+      const float area = vector_area[3];
+      store3(&s.tree.sources[slot].position_mm.x, area > 0 ? 0.5f * (position + weighted * (1 / area)) : position);
       if (normals.empty()) continue;
-      const float length = glm::length(sum.area_vector_mm2);
-      normals[vertex] = length > 0 ? sum.area_vector_mm2 / length : glm::vec3(0, 0, 1);
+      const Four squares = vector_area * vector_area;
+      const float length2 = squares[0] + squares[1] + squares[2];
+      store3(&normals[vertex].x, length2 > 0 ? vector_area * (1 / std::sqrt(length2)) : Four{0, 0, 1, 0});
     }
     if (end == surface.slot_count) {
       for (uint32_t slot = end; slot < s.tree.places.size(); ++slot) {
@@ -166,32 +182,25 @@ glm::vec3 DipoleIntegral::State::weld_irradiance(uint32_t slot, std::span<const 
 void DipoleIntegral::set_irradiance(std::span<const glm::vec3> at_triangles, std::span<const glm::vec3> at_vertices) {
   State& s = *state_;
   const SurfaceTopology& surface = *s.topology;
-  const auto slots = surface.slot_count, triangles = static_cast<uint32_t>(surface.triangles.size());
-  s.for_each((triangles + kChunk - 1) / kChunk, [&](uint32_t chunk) {
-    const uint32_t end = std::min((chunk + 1) * kChunk, triangles);
-    for (uint32_t t = chunk * kChunk; t < end; ++t) s.faces[t].weighted = s.faces[t].area_mm2 / 3 * at_triangles[t];
-  });
   s.for_each(s.tree.chunk_count(), [&](uint32_t chunk) {
-    const uint32_t end = std::min((chunk + 1) * kChunk, slots);
+    const uint32_t end = std::min((chunk + 1) * kChunk, surface.slot_count);
+    Colour colour;
     for (uint32_t slot = chunk * kChunk; slot < end; ++slot) {
       Four flux{};
       for (uint32_t k = surface.first_corner[slot]; k < surface.first_corner[slot + 1]; ++k) {
-        flux += load4(reinterpret_cast<const float*>(&s.faces[surface.triangle_of_corner[k]]) + 4);
+        const uint32_t t = surface.triangle_of_corner[k];
+        flux += s.faces[t].area_mm2 * load3(&at_triangles[t].x);
       }
-      s.tree.sources[slot].flux_w = {flux[0], flux[1], flux[2]};
+      flux *= 1.0f / 3;
+      store3(&s.tree.sources[slot].flux_w.x, flux);
+      colour.add(flux);
       s.irradiance[slot] = s.weld_irradiance(slot, at_vertices);
     }
+    s.chunk_colours[chunk] = colour;
   });
-  const auto is_lit = [](const Source& source) { return source.flux_w.x + source.flux_w.y + source.flux_w.z > 0; };
-  const auto first = std::find_if(s.tree.sources.begin(), s.tree.sources.end(), is_lit);
-  std::atomic<bool> coloured = false;
-  s.for_each(s.tree.chunk_count(), [&](uint32_t chunk) {
-    const uint32_t end = std::min((chunk + 1) * kChunk, slots);
-    for (uint32_t slot = chunk * kChunk; slot < end && !coloured.load(std::memory_order_relaxed); ++slot) {
-      if (!same_colour(first->flux_w, s.tree.sources[slot].flux_w)) coloured = true;
-    }
-  });
-  s.coloured = coloured;
+  Colour colour;
+  for (const Colour& of_chunk : s.chunk_colours) colour.add(of_chunk);
+  s.coloured = colour.mixed();
 }
 
 void DipoleIntegral::refit_flux() {

@@ -92,9 +92,9 @@ HWY_INLINE void add_expansion(const Expansion& expansion, LeafVector& leaf) {
 HWY_INLINE void open_nodes(const GatherInput& input, const Receiver& receiver, const uint32_t* nodes, size_t node_count,
                            GatherScratch& scratch) {
   for (LeafSources& side : scratch.sides) {
-    side.moment_count = side.point_count = 0;
-    if (side.points.size() >= 16 * node_count) continue;
-    side.points.resize(32 * node_count);
+    side.moment_count = side.four_count = 0;
+    if (side.fours.size() >= 4 * node_count) continue;
+    side.fours.resize(8 * node_count);
     side.moments.resize(8 * node_count);
   }
   const glm::vec3& facing = receiver.facing;
@@ -125,12 +125,7 @@ HWY_INLINE void open_nodes(const GatherInput& input, const Receiver& receiver, c
         side.moments[side.moment_count++] = block + k;
         continue;
       }
-      const uint32_t first = 16 * nodes[i] + 4 * k;
-      for (uint32_t slot = first; slot < first + 4; ++slot) {
-        const glm::vec3& flux = input.tree->sources[slot].flux_w;
-        side.points[side.point_count] = slot;
-        side.point_count += flux.x + flux.y + flux.z > 0;
-      }
+      side.fours[side.four_count++] = 16 * nodes[i] + 4 * k;
     }
   }
 }
@@ -144,7 +139,10 @@ HWY_INLINE void add_side(const GatherInput& input, const KernelTable& table, con
     add_moments<kColoured>(domain, table, pack.rows + side.wide_moments[m], pack.stride, leaf);
   }
   for (size_t m = 0; m < side.moment_count; ++m) add_moments<kColoured>(domain, table, side.moments[m], 4, leaf);
-  for (size_t p = 0; p < side.point_count; ++p) add_point(domain, table, input.tree->sources[side.points[p]], leaf);
+  for (size_t f = 0; f < side.four_count; ++f) {
+    const Source* four = &input.tree->sources[side.fours[f]];
+    for (int k = 0; k < 4; ++k) add_point(domain, table, four[k], leaf);
+  }
   into = leaf;
 }
 
@@ -177,8 +175,11 @@ HWY_INLINE void gather_leaf(const GatherInput& input, uint32_t leaf_node, const 
   alignas(64) float place[3][NodeTree::kLeafSlots];
   alignas(64) float result[3][NodeTree::kLeafSlots];
   const uint32_t first = NodeTree::kLeafSlots * leaf_node;
-  for (uint32_t i = 0; i < NodeTree::kLeafSlots; ++i) {
-    for (int a = 0; a < 3; ++a) place[a][i] = input.tree->places[first + i].position_mm[a];
+  for (uint32_t i = 0; i < NodeTree::kLeafSlots; i += 4) {
+    const auto row = [&](uint32_t k) HWY_ATTR { return load4(&input.tree->places[first + i + k].position_mm.x); };
+    Four rows[4] = {row(0), row(1), row(2), row(3)};
+    transpose4(rows[0], rows[1], rows[2], rows[3]);
+    for (int a = 0; a < 3; ++a) store4(place[a] + i, rows[a]);
   }
   for (size_t i = 0; i < NodeTree::kLeafSlots; i += hn::Lanes(d)) {
     LeafVector leaf{hn::Load(d, place[0] + i), hn::Load(d, place[1] + i), hn::Load(d, place[2] + i), {}};
@@ -190,9 +191,14 @@ HWY_INLINE void gather_leaf(const GatherInput& input, uint32_t leaf_node, const 
     for (int c = 0; c < 3; ++c) hn::Store(leaf.radiosity[c], d, result[c] + i);
   }
   const uint32_t end = std::min(first + NodeTree::kLeafSlots, input.tree->slot_count());
-  for (uint32_t slot = first; slot < end; ++slot) {
-    const glm::vec3 radiosity(result[0][slot - first], result[1][slot - first], result[2][slot - first]);
-    input.radiosity[input.vertex_of_slot[slot]] = radiosity + local * input.irradiance[slot];
+  const Four local4{local.x, local.y, local.z, 0};
+  for (uint32_t i = 0; i < NodeTree::kLeafSlots; i += 4) {
+    Four rows[4] = {load4(result[0] + i), load4(result[1] + i), load4(result[2] + i), Four{}};
+    transpose4(rows[0], rows[1], rows[2], rows[3]);
+    for (uint32_t k = 0; k < 4 && first + i + k < end; ++k) {
+      const uint32_t slot = first + i + k;
+      store3(&input.radiosity[input.vertex_of_slot[slot]].x, rows[k] + local4 * load3(&input.irradiance[slot].x));
+    }
   }
 }
 

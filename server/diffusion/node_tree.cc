@@ -109,21 +109,25 @@ void refit_geometry_above(NodeTree& tree, uint32_t level, uint32_t index) {
   refit_geometry_block(c, tree.block(level, index));
 }
 
+float largest_of(Four v) { return std::max(std::max(v[0], v[1]), std::max(v[2], v[3])); }
+
 /// The radius of a leaf from its vertices (a bound through the children's spheres is a third larger), and its spacing.
 void measure_leaf(NodeTree& tree, uint32_t leaf) {
   float* block = tree.block(NodeTree::kLeafLevel, leaf / 4) + leaf % 4;
   const glm::vec3 centre(block[4 * kCentreX], block[4 * kCentreY], block[4 * kCentreZ]);
-  const Place* places = &tree.places[size_t{16} * leaf];
-  float radius2 = 0, largest = 0, sum = 0;
-  for (int i = 0; i < 16; ++i) {
-    const glm::vec3 way = places[i].position_mm - centre;
-    radius2 = std::max(radius2, way.x * way.x + way.y * way.y + way.z * way.z);
-    largest = std::max(largest, places[i].area_mm2);
-    sum += places[i].area_mm2;
+  Four radius2{}, largest{}, sum{};
+  for (uint32_t k = 0; k < 4; ++k) {
+    Four fields[4];
+    load_slots(&tree.places[size_t{16} * leaf], 0, k, fields);
+    const Four x = fields[0] - centre.x, y = fields[1] - centre.y, z = fields[2] - centre.z;
+    radius2 = max4(radius2, x * x + y * y + z * z);
+    largest = max4(largest, fields[3]);
+    sum += fields[3];
   }
-  block[4 * kRadius] = std::sqrt(radius2);
+  block[4 * kRadius] = std::sqrt(largest_of(radius2));
   const uint32_t real = std::min(16u, tree.slot_count() - 16 * leaf);
-  tree.spacing2_mm2[leaf] = 0.5f * (sum / static_cast<float>(real) + largest);
+  const float area = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  tree.spacing2_mm2[leaf] = 0.5f * (area / static_cast<float>(real) + largest_of(largest));
 }
 
 struct FluxChildren : Children {

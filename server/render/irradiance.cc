@@ -7,28 +7,27 @@
 #include "tbb/blocked_range.h"
 #include "tbb/parallel_for.h"
 
-namespace diaphane::render {
-namespace {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/irradiance.cc"
+// foreach_target.h comes before whatever it repeats.
+// clang-format off
+#include "hwy/foreach_target.h"
+#include "hwy/highway.h"
+// clang-format on
+
+// The vectors are four wide everywhere; the SIMD level says with which instructions.
+HWY_BEFORE_NAMESPACE();
+namespace diaphane::render::HWY_NAMESPACE {
 
 using diffusion::Four, diffusion::load3, diffusion::load4;
 
-constexpr size_t kChunk = SurfacePoints::kCapacity;
-// What a vector may read behind the last value.
-constexpr size_t kPadding = 16;
-
-/// Calls work(i) for i below `count`, spread over all cores.
-template <typename Work>
-void for_each(size_t count, const Work& work) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 1024), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t i = range.begin(); i != range.end(); ++i) work(i);
-  });
-}
+constexpr size_t kPadding = SurfacePoints::kPadding;
 
 /// Puts four points at `lane`; their normals, of any length, get length one. One without a direction takes
 /// `fallback(its lane of the four)`.
 template <typename Fallback>
-void put_four(Four (&positions_mm)[4], Four (&normals)[4], size_t lane, const Fallback& fallback,
-              SurfacePoints& points) {
+HWY_INLINE void put_four(Four (&positions_mm)[4], Four (&normals)[4], size_t lane, const Fallback& fallback,
+                         SurfacePoints& points) {
   diffusion::transpose4(positions_mm[0], positions_mm[1], positions_mm[2], positions_mm[3]);
   diffusion::transpose4(normals[0], normals[1], normals[2], normals[3]);
   const Four zero{};
@@ -49,8 +48,7 @@ void put_four(Four (&positions_mm)[4], Four (&normals)[4], size_t lane, const Fa
   }
 }
 
-/// The centroids of triangles first, first + 1, ..., `count` in all; the last one is repeated to the next multiple of
-/// kPadding.
+/// The centroids of triangles first, first + 1, ..., `count` in all; the last one is repeated up to kPadding.
 void place_triangles(const diffusion::SurfaceTopology& topology, const geometry::PlacedShape& shape, size_t first,
                      size_t count, SurfacePoints& points) {
   for (size_t lane = 0; lane < (count + kPadding - 1) / kPadding * kPadding; lane += 4) {
@@ -58,14 +56,14 @@ void place_triangles(const diffusion::SurfaceTopology& topology, const geometry:
     Four positions[4], normals[4];
     for (size_t k = 0; k < 4; ++k) {
       corners[k] = &topology.triangles[first + std::min(lane + k, count - 1)];
-      const auto sum_of = [&](const std::vector<glm::vec3>& values) {
+      const auto sum_of = [&](const std::vector<glm::vec3>& values) HWY_ATTR {
         return load3(&values[corners[k]->x].x) + load3(&values[corners[k]->y].x) + load3(&values[corners[k]->z].x);
       };
       positions[k] = sum_of(shape.positions_mm) * (1.0f / 3);
       normals[k] = sum_of(shape.normals);
     }
     put_four(
-        positions, normals, lane, [&](uint32_t k) { return shape.normals[corners[k]->x]; }, points);
+        positions, normals, lane, [&](uint32_t k) HWY_ATTR { return shape.normals[corners[k]->x]; }, points);
   }
 }
 
@@ -83,12 +81,6 @@ void place_vertices(const geometry::PlacedShape& shape, size_t first, size_t cou
   }
 }
 
-/// Lights shining on one kind of points.
-struct Receivers {
-  std::span<glm::vec3> irradiance;
-  const float* seen;  ///< where not null, a row of that many values for each light
-};
-
 /// E at the `count` points from `first` on.
 void light_points(std::span<const LightStorage> lights, float refractive_index, const SurfacePoints& points,
                   size_t first, size_t count, const Receivers& receivers) {
@@ -103,6 +95,39 @@ void light_points(std::span<const LightStorage> lights, float refractive_index, 
     diffusion::transpose4(rows[0], rows[1], rows[2], rows[3]);
     for (size_t k = 0; k < 4 && i + k < count; ++k) diffusion::store3(&receivers.irradiance[first + i + k].x, rows[k]);
   }
+}
+
+void light_triangles(const LitSurface& surface, size_t first, size_t count, const Receivers& receivers) {
+  SurfacePoints points;
+  place_triangles(surface.topology, surface.shape, first, count, points);
+  light_points(surface.lights, surface.refractive_index, points, first, count, receivers);
+}
+
+void light_vertices(const LitSurface& surface, size_t first, size_t count, const Receivers& receivers) {
+  SurfacePoints points;
+  place_vertices(surface.shape, first, count, points);
+  light_points(surface.lights, surface.refractive_index, points, first, count, receivers);
+}
+
+}  // namespace diaphane::render::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace diaphane::render {
+HWY_EXPORT(light_triangles);
+HWY_EXPORT(light_vertices);
+
+namespace {
+
+constexpr size_t kChunk = SurfacePoints::kCapacity;
+constexpr size_t kPadding = SurfacePoints::kPadding;
+
+/// Calls work(i) for i below `count`, spread over all cores.
+template <typename Work>
+void for_each(size_t count, const Work& work) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 1024), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t i = range.begin(); i != range.end(); ++i) work(i);
+  });
 }
 
 }  // namespace
@@ -131,23 +156,22 @@ void IrradianceStage::run(const diffusion::SurfaceTopology& topology, const geom
   irradiance_.of_triangle.resize(topology.triangles.size());
   irradiance_.of_vertex.resize(shape.positions_mm.size());
   if (shadows != nullptr) cast_shadows(topology, shape, lights, *shadows);
+  const LitSurface surface{topology, shape, lights, refractive_index};
   const Receivers triangles{irradiance_.of_triangle, shadows == nullptr ? nullptr : of_triangle_.data()};
   const Receivers vertices{irradiance_.of_vertex, shadows == nullptr ? nullptr : of_vertex_.data()};
   const size_t triangle_count = triangles.irradiance.size(), vertex_count = vertices.irradiance.size();
   const size_t triangle_chunks = (triangle_count + kChunk - 1) / kChunk;
   const size_t vertex_chunks = (vertex_count + kChunk - 1) / kChunk;
   tbb::parallel_for(size_t{0}, triangle_chunks + vertex_chunks, [&](size_t chunk) {
-    SurfacePoints points;
     if (chunk < triangle_chunks) {
       const size_t first = chunk * kChunk, count = std::min(kChunk, triangle_count - first);
-      place_triangles(topology, shape, first, count, points);
-      light_points(lights, refractive_index, points, first, count, triangles);
+      HWY_DYNAMIC_DISPATCH(light_triangles)(surface, first, count, triangles);
     } else {
       const size_t first = (chunk - triangle_chunks) * kChunk, count = std::min(kChunk, vertex_count - first);
-      place_vertices(shape, first, count, points);
-      light_points(lights, refractive_index, points, first, count, vertices);
+      HWY_DYNAMIC_DISPATCH(light_vertices)(surface, first, count, vertices);
     }
   });
 }
 
 }  // namespace diaphane::render
+#endif

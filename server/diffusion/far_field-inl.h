@@ -36,7 +36,13 @@ HWY_INLINE Pack pack_children(const NodeTree& tree, uint32_t level, const uint32
   float* rows = scratch.pack.data();
   for (size_t i = 0; i < near_count; ++i) {
     const float* block = tree.block(level, near[i]);
-    for (uint32_t f = 0; f < fields; ++f) std::memcpy(rows + f * stride + 4 * i, block + 4 * f, 4 * sizeof(float));
+    float* to = rows + 4 * i;
+    static_assert(kDipole % 3 == 0 && kNodeFields % 3 == 0);
+    for (uint32_t f = 0; f < fields; f += 3, to += 3 * stride, block += 12) {
+      std::memcpy(to, block, 4 * sizeof(float));
+      std::memcpy(to + stride, block + 4, 4 * sizeof(float));
+      std::memcpy(to + 2 * stride, block + 8, 4 * sizeof(float));
+    }
     for (uint32_t k = 0; k < 4; ++k) scratch.pack_nodes[4 * i + k] = 4 * near[i] + k;
   }
   for (uint32_t f = 0; f < fields; ++f) std::fill(rows + f * stride + count, rows + (f + 1) * stride, 0.0f);

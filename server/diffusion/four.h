@@ -1,6 +1,7 @@
 // Four floats at once with the compiler's own vectors: the same bytes on every machine that rounds the same.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -16,6 +17,23 @@ inline Four load4(const float* from) {
 }
 
 inline void store4(float* to, Four v) { std::memcpy(to, &v, sizeof(v)); }
+
+typedef double TwoDoubles __attribute__((vector_size(16)));
+
+/// Three floats and a zero; reads no fourth.
+inline Four load3(const float* from) {
+  double low;
+  std::memcpy(&low, from, sizeof(low));
+  const Four high{from[2], 0, 0, 0};
+  return __builtin_shufflevector(std::bit_cast<Four>(TwoDoubles{low, 0}), high, 0, 1, 4, 5);
+}
+
+/// The first three lanes; writes no fourth.
+inline void store3(float* to, Four v) {
+  const double low = std::bit_cast<TwoDoubles>(v)[0];
+  std::memcpy(to, &low, sizeof(low));
+  to[2] = v[2];
+}
 
 inline Four max4(Four a, Four b) { return a > b ? a : b; }
 
@@ -33,7 +51,13 @@ inline uint32_t bits_of(FourMask mask) {
 #endif
 }
 
-inline Four sqrt4(Four v) { return Four{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])}; }
+inline Four sqrt4(Four v) {
+#if defined(__SSE2__)
+  return __builtin_ia32_sqrtps(v);
+#else
+  return Four{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
+#endif
+}
 
 /// Rows become columns.
 inline void transpose4(Four& a, Four& b, Four& c, Four& d) {

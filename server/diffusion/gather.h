@@ -51,8 +51,8 @@ enum Side { kSame, kOpposite };
 struct LeafSources {
   AlignedVector<uint32_t> wide_moments;  ///< columns of the pack: whole leaves
   std::vector<const float*> moments;     ///< columns of level-1 blocks: four vertices
-  std::vector<uint32_t> points;          ///< slots
-  size_t wide_moment_count = 0, moment_count = 0, point_count = 0;
+  std::vector<uint32_t> fours;           ///< first of four slots, each taken by itself
+  size_t wide_moment_count = 0, moment_count = 0, four_count = 0;
 };
 
 /// Working memory of one thread; grows to what a body needs and stays.

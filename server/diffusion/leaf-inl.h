@@ -40,18 +40,19 @@ HWY_INLINE void add_moments(const KernelDomain& domain, const KernelTable& table
   V along = covariance_along(way, field(kCovXX), field(kCovYY), field(kCovZZ), field(kCov2XY), field(kCov2XZ),
                              field(kCov2YZ));
   along = hn::Add(along, along);
-  // Factors of f′v⁵ and f″v⁷ next to fv³.
-  const V first_weight = hn::Mul(trace, at.inverse2);
-  const V second_weight = hn::Mul(along, hn::Mul(at.inverse2, at.inverse2));
+  // Factors of f′v⁵ and f″v⁷ next to fv³. f″v⁷ = ½ scale ((f′v⁵)′v − 5f′v⁵): a table less to look up.
+  const V second_weight = hn::Mul(hn::Mul(along, hn::Set(d, 0.5f * domain.scale)), hn::Mul(at.inverse2, at.inverse2));
+  const V first_weight = hn::NegMulAdd(hn::Set(d, 5.0f), second_weight, hn::Mul(trace, at.inverse2));
+  const V slope_weight = hn::Mul(second_weight, at.v);
   for_channels([&](uint32_t c) HWY_ATTR {
-    const V f1 = cubic(table.coefficient[1][c], at);
-    V sum = hn::MulAdd(second_weight, cubic(table.coefficient[2][c], at), cubic(table.coefficient[0][c], at));
-    sum = hn::Mul(hn::MulAdd(first_weight, f1, sum), field(kFluxR + c));
+    const CubicSlope f1 = cubic_slope(table.coefficient[1][c], at);
+    V sum = hn::MulAdd(slope_weight, f1.slope, cubic(table.coefficient[0][c], at));
+    sum = hn::Mul(hn::MulAdd(first_weight, f1.value, sum), field(kFluxR + c));
     if constexpr (kColoured) {
       const V dot =
           hn::MulAdd(field(kDipole + 3 * c), way.x,
                      hn::MulAdd(field(kDipole + 3 * c + 1), way.y, hn::Mul(field(kDipole + 3 * c + 2), way.z)));
-      sum = hn::NegMulAdd(hn::Mul(hn::Add(dot, dot), at.inverse2), f1, sum);
+      sum = hn::NegMulAdd(hn::Mul(hn::Add(dot, dot), at.inverse2), f1.value, sum);
     }
     leaf.radiosity[c] = hn::MulAdd(sum, at.inverse3, leaf.radiosity[c]);
   });
@@ -88,14 +89,30 @@ HWY_INLINE void add_expansion(const Expansion& expansion, LeafVector& leaf) {
   }
 }
 
+/// Lists those of four siblings that are in `taken`: by moments or vertex by vertex. Always writes, and counts what is
+/// taken: a branch for each would be guessed wrong too often.
+HWY_INLINE void list_siblings(const float* block, uint32_t first_slot, uint32_t taken, uint32_t by_moments,
+                              LeafSources& side) {
+  const uint32_t moments = taken & by_moments, fours = taken & ~by_moments;
+  const float** moments_to = side.moments.data();
+  uint32_t* fours_to = side.fours.data();
+  for (uint32_t k = 0; k < 4; ++k) {
+    moments_to[side.moment_count] = block + k;
+    side.moment_count += moments >> k & 1;
+    fours_to[side.four_count] = first_slot + 4 * k;
+    side.four_count += fours >> k & 1;
+  }
+}
+
 /// Sorts the children of the nodes to be opened into moments and points of either side; four siblings at a time.
 HWY_INLINE void open_nodes(const GatherInput& input, const Receiver& receiver, const uint32_t* nodes, size_t node_count,
                            GatherScratch& scratch) {
   for (LeafSources& side : scratch.sides) {
-    side.moment_count = side.point_count = 0;
-    if (side.points.size() >= 16 * node_count) continue;
-    side.points.resize(32 * node_count);
-    side.moments.resize(8 * node_count);
+    side.moment_count = side.four_count = 0;
+    // One more than can be taken: what is not is written there.
+    if (side.fours.size() > 4 * node_count) continue;
+    side.fours.resize(8 * node_count + 1);
+    side.moments.resize(8 * node_count + 1);
   }
   const glm::vec3& facing = receiver.facing;
   const float z2 = input.kernels->smooth_mm() * input.kernels->smooth_mm();
@@ -118,20 +135,9 @@ HWY_INLINE void open_nodes(const GatherInput& input, const Receiver& receiver, c
     const Four gap = max4(zero, sqrt4(dx * dx + dy * dy + dz * dz) - receiver.radius);
     const Four gap2 = gap * gap + z2;
     const uint32_t by_moments = bits_of((row(kSpread2) < opening2 * gap2) & (radius * radius < 1.2f * gap2));
-    for (uint32_t left = lit; left != 0; left &= left - 1) {
-      const auto k = static_cast<uint32_t>(std::countr_zero(left));
-      LeafSources& side = scratch.sides[(opposite >> k) & 1 ? kOpposite : kSame];
-      if ((by_moments >> k) & 1) {
-        side.moments[side.moment_count++] = block + k;
-        continue;
-      }
-      const uint32_t first = 16 * nodes[i] + 4 * k;
-      for (uint32_t slot = first; slot < first + 4; ++slot) {
-        const glm::vec3& flux = input.tree->sources[slot].flux_w;
-        side.points[side.point_count] = slot;
-        side.point_count += flux.x + flux.y + flux.z > 0;
-      }
-    }
+    const uint32_t behind = lit & opposite;
+    list_siblings(block, 16 * nodes[i], lit & ~opposite, by_moments, scratch.sides[kSame]);
+    if (behind != 0) list_siblings(block, 16 * nodes[i], behind, by_moments, scratch.sides[kOpposite]);
   }
 }
 
@@ -144,7 +150,10 @@ HWY_INLINE void add_side(const GatherInput& input, const KernelTable& table, con
     add_moments<kColoured>(domain, table, pack.rows + side.wide_moments[m], pack.stride, leaf);
   }
   for (size_t m = 0; m < side.moment_count; ++m) add_moments<kColoured>(domain, table, side.moments[m], 4, leaf);
-  for (size_t p = 0; p < side.point_count; ++p) add_point(domain, table, input.tree->sources[side.points[p]], leaf);
+  for (size_t f = 0; f < side.four_count; ++f) {
+    const Source* four = &input.tree->sources[side.fours[f]];
+    for (int k = 0; k < 4; ++k) add_point(domain, table, four[k], leaf);
+  }
   into = leaf;
 }
 
@@ -177,8 +186,11 @@ HWY_INLINE void gather_leaf(const GatherInput& input, uint32_t leaf_node, const 
   alignas(64) float place[3][NodeTree::kLeafSlots];
   alignas(64) float result[3][NodeTree::kLeafSlots];
   const uint32_t first = NodeTree::kLeafSlots * leaf_node;
-  for (uint32_t i = 0; i < NodeTree::kLeafSlots; ++i) {
-    for (int a = 0; a < 3; ++a) place[a][i] = input.tree->places[first + i].position_mm[a];
+  for (uint32_t i = 0; i < NodeTree::kLeafSlots; i += 4) {
+    const auto row = [&](uint32_t k) HWY_ATTR { return load4(&input.tree->places[first + i + k].position_mm.x); };
+    Four rows[4] = {row(0), row(1), row(2), row(3)};
+    transpose4(rows[0], rows[1], rows[2], rows[3]);
+    for (int a = 0; a < 3; ++a) store4(place[a] + i, rows[a]);
   }
   for (size_t i = 0; i < NodeTree::kLeafSlots; i += hn::Lanes(d)) {
     LeafVector leaf{hn::Load(d, place[0] + i), hn::Load(d, place[1] + i), hn::Load(d, place[2] + i), {}};
@@ -190,9 +202,14 @@ HWY_INLINE void gather_leaf(const GatherInput& input, uint32_t leaf_node, const 
     for (int c = 0; c < 3; ++c) hn::Store(leaf.radiosity[c], d, result[c] + i);
   }
   const uint32_t end = std::min(first + NodeTree::kLeafSlots, input.tree->slot_count());
-  for (uint32_t slot = first; slot < end; ++slot) {
-    const glm::vec3 radiosity(result[0][slot - first], result[1][slot - first], result[2][slot - first]);
-    input.radiosity[input.vertex_of_slot[slot]] = radiosity + local * input.irradiance[slot];
+  const Four local4{local.x, local.y, local.z, 0};
+  for (uint32_t i = 0; i < NodeTree::kLeafSlots; i += 4) {
+    Four rows[4] = {load4(result[0] + i), load4(result[1] + i), load4(result[2] + i), Four{}};
+    transpose4(rows[0], rows[1], rows[2], rows[3]);
+    for (uint32_t k = 0; k < 4 && first + i + k < end; ++k) {
+      const uint32_t slot = first + i + k;
+      store3(&input.radiosity[input.vertex_of_slot[slot]].x, rows[k] + local4 * load3(&input.irradiance[slot].x));
+    }
   }
 }
 

@@ -6,8 +6,17 @@
 
 #include "diffusion/four.h"
 
-namespace diaphane::diffusion {
-namespace {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "diffusion/node_tree.cc"
+// foreach_target.h comes before whatever it repeats.
+// clang-format off
+#include "hwy/foreach_target.h"
+#include "hwy/highway.h"
+// clang-format on
+
+// The vectors are four wide everywhere; the SIMD level says with which instructions.
+HWY_BEFORE_NAMESPACE();
+namespace diaphane::diffusion::HWY_NAMESPACE {
 
 constexpr uint32_t kChunkLevel = 4;
 // Gives nodes without area or flux a centroid.
@@ -49,6 +58,8 @@ struct GeometryChildren : Children {
   Four facing[3][4];
 };
 
+/// `kPoints`: the children have no extent of their own.
+template <bool kPoints>
 void refit_geometry_block(const GeometryChildren& c, float* block) {
   Four weight[4];
   Four area{}, total{}, x{}, y{}, z{};
@@ -66,22 +77,27 @@ void refit_geometry_block(const GeometryChildren& c, float* block) {
   for (int k = 0; k < 4; ++k) {
     const Four dx = c.x[k] - x, dy = c.y[k] - y, dz = c.z[k] - z;
     const Four distance2 = dx * dx + dy * dy + dz * dz;
-    spread2 += weight[k] * (c.spread2[k] + distance2);
-    radius = max4(radius, c.radius[k] + sqrt4(distance2));
+    if constexpr (kPoints) {
+      spread2 += weight[k] * distance2;
+      radius = max4(radius, distance2);
+    } else {
+      spread2 += weight[k] * (c.spread2[k] + distance2);
+      radius = max4(radius, c.radius[k] + sqrt4(distance2));
+    }
   }
   store4(block + 4 * kCentreX, x);
   store4(block + 4 * kCentreY, y);
   store4(block + 4 * kCentreZ, z);
   store4(block + 4 * kArea, area);
   store4(block + 4 * kSpread2, spread2 * inverse);
-  store4(block + 4 * kRadius, radius);
+  store4(block + 4 * kRadius, kPoints ? sqrt4(radius) : radius);
   for (uint32_t a = 0; a < 3; ++a) {
     store4(block + 4 * (kFacingX + a), c.facing[a][0] + c.facing[a][1] + c.facing[a][2] + c.facing[a][3]);
   }
 }
 
 void refit_geometry_level1(NodeTree& tree, uint32_t leaf) {
-  GeometryChildren c{};
+  GeometryChildren c;
   for (uint32_t k = 0; k < 4; ++k) {
     Four low[4], high[4];
     load_slots(&tree.places[size_t{16} * leaf], 0, k, low);
@@ -89,7 +105,7 @@ void refit_geometry_level1(NodeTree& tree, uint32_t leaf) {
     c.x[k] = low[0], c.y[k] = low[1], c.z[k] = low[2], c.area[k] = low[3];
     for (int a = 0; a < 3; ++a) c.facing[a][k] = high[a];
   }
-  refit_geometry_block(c, tree.block(1, leaf));
+  refit_geometry_block<true>(c, tree.block(1, leaf));
 }
 
 void refit_geometry_above(NodeTree& tree, uint32_t level, uint32_t index) {
@@ -106,24 +122,28 @@ void refit_geometry_above(NodeTree& tree, uint32_t level, uint32_t index) {
     load_children(tree, level, index, kFacingX + a, c.facing[a]);
     for (Four& facing : c.facing[a]) facing *= exists;
   }
-  refit_geometry_block(c, tree.block(level, index));
+  refit_geometry_block<false>(c, tree.block(level, index));
 }
+
+float largest_of(Four v) { return std::max(std::max(v[0], v[1]), std::max(v[2], v[3])); }
 
 /// The radius of a leaf from its vertices (a bound through the children's spheres is a third larger), and its spacing.
 void measure_leaf(NodeTree& tree, uint32_t leaf) {
   float* block = tree.block(NodeTree::kLeafLevel, leaf / 4) + leaf % 4;
   const glm::vec3 centre(block[4 * kCentreX], block[4 * kCentreY], block[4 * kCentreZ]);
-  const Place* places = &tree.places[size_t{16} * leaf];
-  float radius2 = 0, largest = 0, sum = 0;
-  for (int i = 0; i < 16; ++i) {
-    const glm::vec3 way = places[i].position_mm - centre;
-    radius2 = std::max(radius2, way.x * way.x + way.y * way.y + way.z * way.z);
-    largest = std::max(largest, places[i].area_mm2);
-    sum += places[i].area_mm2;
+  Four radius2{}, largest{}, sum{};
+  for (uint32_t k = 0; k < 4; ++k) {
+    Four fields[4];
+    load_slots(&tree.places[size_t{16} * leaf], 0, k, fields);
+    const Four x = fields[0] - centre.x, y = fields[1] - centre.y, z = fields[2] - centre.z;
+    radius2 = max4(radius2, x * x + y * y + z * z);
+    largest = max4(largest, fields[3]);
+    sum += fields[3];
   }
-  block[4 * kRadius] = std::sqrt(radius2);
+  block[4 * kRadius] = std::sqrt(largest_of(radius2));
   const uint32_t real = std::min(16u, tree.slot_count() - 16 * leaf);
-  tree.spacing2_mm2[leaf] = 0.5f * (sum / static_cast<float>(real) + largest);
+  const float area = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  tree.spacing2_mm2[leaf] = 0.5f * (area / static_cast<float>(real) + largest_of(largest));
 }
 
 struct FluxChildren : Children {
@@ -132,6 +152,8 @@ struct FluxChildren : Children {
   Four dipole[9][4];
 };
 
+/// `kPoints`: the children have no moments of their own.
+template <bool kPoints>
 void refit_flux_block(const FluxChildren& c, bool coloured, float* block) {
   Four weight[4];
   Four total{}, x{}, y{}, z{};
@@ -151,12 +173,14 @@ void refit_flux_block(const FluxChildren& c, bool coloured, float* block) {
   for (int k = 0; k < 4; ++k) {
     const Four dx = c.x[k] - x, dy = c.y[k] - y, dz = c.z[k] - z;
     const Four moments[6] = {dx * dx, dy * dy, dz * dz, 2.0f * dx * dy, 2.0f * dx * dz, 2.0f * dy * dz};
-    for (int m = 0; m < 6; ++m) covariance[m] += weight[k] * (c.covariance[m][k] + moments[m]);
+    for (int m = 0; m < 6; ++m) {
+      covariance[m] += weight[k] * (kPoints ? moments[m] : c.covariance[m][k] + moments[m]);
+    }
     if (!coloured) continue;
-    for (int channel = 0; channel < 3; ++channel) {
-      dipole[3 * channel + 0] += c.dipole[3 * channel + 0][k] + c.flux[channel][k] * dx;
-      dipole[3 * channel + 1] += c.dipole[3 * channel + 1][k] + c.flux[channel][k] * dy;
-      dipole[3 * channel + 2] += c.dipole[3 * channel + 2][k] + c.flux[channel][k] * dz;
+    const Four way[3] = {dx, dy, dz};
+    for (int m = 0; m < 9; ++m) {
+      if constexpr (!kPoints) dipole[m] += c.dipole[m][k];
+      dipole[m] += c.flux[m / 3][k] * way[m % 3];
     }
   }
   for (uint32_t channel = 0; channel < 3; ++channel) {
@@ -169,7 +193,7 @@ void refit_flux_block(const FluxChildren& c, bool coloured, float* block) {
 }
 
 void refit_flux_level1(NodeTree& tree, uint32_t leaf, bool coloured) {
-  FluxChildren c{};
+  FluxChildren c;
   for (uint32_t k = 0; k < 4; ++k) {
     Four low[4], high[4];
     load_slots(&tree.sources[size_t{16} * leaf], 0, k, low);
@@ -177,7 +201,7 @@ void refit_flux_level1(NodeTree& tree, uint32_t leaf, bool coloured) {
     c.x[k] = low[0], c.y[k] = low[1], c.z[k] = low[2];
     c.flux[0][k] = low[3], c.flux[1][k] = high[0], c.flux[2][k] = high[1];
   }
-  refit_flux_block(c, coloured, tree.block(1, leaf));
+  refit_flux_block<true>(c, coloured, tree.block(1, leaf));
 }
 
 void refit_flux_above(NodeTree& tree, uint32_t level, uint32_t index, bool coloured) {
@@ -197,7 +221,7 @@ void refit_flux_above(NodeTree& tree, uint32_t level, uint32_t index, bool colou
       for (Four& moment : c.dipole[m]) moment *= exists;
     }
   }
-  refit_flux_block(c, coloured, tree.block(level, index));
+  refit_flux_block<false>(c, coloured, tree.block(level, index));
 }
 
 /// Calls visit(level, block) for the blocks above level 1 whose slots are in `chunk`, from below.
@@ -219,6 +243,42 @@ void for_blocks_of_top(const NodeTree& tree, const Visit& visit) {
 
 uint32_t first_leaf(uint32_t chunk) { return chunk * (NodeTree::kChunkSlots / 16); }
 uint32_t end_leaf(const NodeTree& tree, uint32_t chunk) { return std::min(first_leaf(chunk + 1), tree.leaf_count()); }
+
+void refit_geometry(NodeTree& tree, uint32_t chunk) {
+  for (uint32_t leaf = first_leaf(chunk); leaf < end_leaf(tree, chunk); ++leaf) refit_geometry_level1(tree, leaf);
+  for_blocks_of_chunk(tree, chunk, [&](uint32_t level, uint32_t index) HWY_ATTR {
+    refit_geometry_above(tree, level, index);
+    if (level != NodeTree::kLeafLevel) return;
+    for (uint32_t leaf = 4 * index; leaf < std::min(4 * index + 4, tree.leaf_count()); ++leaf) measure_leaf(tree, leaf);
+  });
+}
+
+void refit_geometry_of_top(NodeTree& tree) {
+  for_blocks_of_top(tree, [&](uint32_t level, uint32_t index) HWY_ATTR { refit_geometry_above(tree, level, index); });
+}
+
+void refit_flux(NodeTree& tree, uint32_t chunk, bool coloured) {
+  for (uint32_t leaf = first_leaf(chunk); leaf < end_leaf(tree, chunk); ++leaf) refit_flux_level1(tree, leaf, coloured);
+  for_blocks_of_chunk(tree, chunk,
+                      [&](uint32_t level, uint32_t index) HWY_ATTR { refit_flux_above(tree, level, index, coloured); });
+}
+
+void refit_flux_of_top(NodeTree& tree, bool coloured) {
+  for_blocks_of_top(tree,
+                    [&](uint32_t level, uint32_t index) HWY_ATTR { refit_flux_above(tree, level, index, coloured); });
+}
+
+}  // namespace diaphane::diffusion::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace diaphane::diffusion {
+HWY_EXPORT(refit_geometry);
+HWY_EXPORT(refit_geometry_of_top);
+HWY_EXPORT(refit_flux);
+HWY_EXPORT(refit_flux_of_top);
+
+namespace {
 
 constexpr int kStepBias = (127 - 32) << 2;
 
@@ -248,30 +308,15 @@ NodeTree::NodeTree(uint32_t slot_count) : slot_count_(slot_count) {
   spacing2_mm2.resize(leaf_count());
 }
 
-void NodeTree::refit_geometry_chunk(uint32_t chunk) {
-  for (uint32_t leaf = first_leaf(chunk); leaf < end_leaf(*this, chunk); ++leaf) refit_geometry_level1(*this, leaf);
-  for_blocks_of_chunk(*this, chunk, [&](uint32_t level, uint32_t index) {
-    refit_geometry_above(*this, level, index);
-    if (level != kLeafLevel) return;
-    for (uint32_t leaf = 4 * index; leaf < std::min(4 * index + 4, leaf_count()); ++leaf) measure_leaf(*this, leaf);
-  });
-}
+void NodeTree::refit_geometry_chunk(uint32_t chunk) { HWY_DYNAMIC_DISPATCH(refit_geometry)(*this, chunk); }
 
-void NodeTree::refit_geometry_top() {
-  for_blocks_of_top(*this, [&](uint32_t level, uint32_t index) { refit_geometry_above(*this, level, index); });
-}
+void NodeTree::refit_geometry_top() { HWY_DYNAMIC_DISPATCH(refit_geometry_of_top)(*this); }
 
 void NodeTree::refit_flux_chunk(uint32_t chunk, bool coloured) {
-  for (uint32_t leaf = first_leaf(chunk); leaf < end_leaf(*this, chunk); ++leaf) {
-    refit_flux_level1(*this, leaf, coloured);
-  }
-  for_blocks_of_chunk(*this, chunk,
-                      [&](uint32_t level, uint32_t index) { refit_flux_above(*this, level, index, coloured); });
+  HWY_DYNAMIC_DISPATCH(refit_flux)(*this, chunk, coloured);
 }
 
-void NodeTree::refit_flux_top(bool coloured) {
-  for_blocks_of_top(*this, [&](uint32_t level, uint32_t index) { refit_flux_above(*this, level, index, coloured); });
-}
+void NodeTree::refit_flux_top(bool coloured) { HWY_DYNAMIC_DISPATCH(refit_flux_of_top)(*this, coloured); }
 
 size_t NodeTree::bytes() const {
   size_t sum = places.size() * sizeof(Place) + sources.size() * sizeof(Source) + spacing2_mm2.size() * sizeof(float);
@@ -280,3 +325,4 @@ size_t NodeTree::bytes() const {
 }
 
 }  // namespace diaphane::diffusion
+#endif

@@ -1,12 +1,14 @@
 #include "geometry/shape.h"
 
 #include <cmath>
+#include <limits>
 
 #include "glm/geometric.hpp"
 #include "glm/mat3x3.hpp"
 #include "glm/matrix.hpp"
 #include "tbb/blocked_range.h"
 #include "tbb/parallel_for.h"
+#include "tbb/parallel_reduce.h"
 
 namespace diaphane::geometry {
 namespace {
@@ -17,6 +19,13 @@ void for_each(size_t count, const Work& work) {
   tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 4096), [&](const tbb::blocked_range<size_t>& range) {
     for (size_t i = range.begin(); i != range.end(); ++i) work(i);
   });
+}
+
+constexpr Bounds kNowhere{glm::vec3(std::numeric_limits<float>::max()),
+                          glm::vec3(std::numeric_limits<float>::lowest())};
+
+Bounds merge(const Bounds& a, const Bounds& b) {
+  return {glm::min(a.lowest, b.lowest), glm::max(a.highest, b.highest)};
 }
 
 /// Unit vector, or `fallback` where `v` has no usable length.
@@ -50,15 +59,23 @@ std::vector<glm::vec3> compute_normals(const MeshTopology& topology, std::span<c
   return normals;
 }
 
-void place_positions(const MeshShape& shape, const glm::mat4& scene_from_mesh, double millimetres_per_unit,
-                     PlacedShape& placed) {
+Bounds place_positions(const MeshShape& shape, const glm::mat4& scene_from_mesh, double millimetres_per_unit,
+                       PlacedShape& placed) {
   placed.flipped = glm::determinant(glm::mat3(scene_from_mesh)) < 0;
   placed.normals.clear();
   placed.positions_mm.resize(shape.positions.size());
   const auto scale = static_cast<float>(millimetres_per_unit);
-  for_each(shape.positions.size(), [&](size_t v) {
-    placed.positions_mm[v] = glm::vec3(scene_from_mesh * glm::vec4(shape.positions[v], 1)) * scale;
-  });
+  return tbb::parallel_deterministic_reduce(
+      tbb::blocked_range<size_t>(0, shape.positions.size(), 4096), kNowhere,
+      [&](const tbb::blocked_range<size_t>& range, Bounds bounds) {
+        for (size_t v = range.begin(); v != range.end(); ++v) {
+          const glm::vec3 placed_mm = glm::vec3(scene_from_mesh * glm::vec4(shape.positions[v], 1)) * scale;
+          placed.positions_mm[v] = placed_mm;
+          bounds = merge(bounds, {placed_mm, placed_mm});
+        }
+        return bounds;
+      },
+      merge);
 }
 
 void place_normals(const MeshTopology& topology, const MeshShape& shape, const glm::mat4& scene_from_mesh,
@@ -76,10 +93,7 @@ void place_normals(const MeshTopology& topology, const MeshShape& shape, const g
 
 Bounds bounds_of(std::span<const glm::vec3> positions) {
   Bounds bounds{positions.front(), positions.front()};
-  for (const glm::vec3& p : positions) {
-    bounds.lowest = glm::min(bounds.lowest, p);
-    bounds.highest = glm::max(bounds.highest, p);
-  }
+  for (const glm::vec3& p : positions) bounds = merge(bounds, {p, p});
   return bounds;
 }
 

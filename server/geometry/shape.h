@@ -28,10 +28,10 @@ struct Bounds {
   glm::vec3 highest{0};
 };
 
-/// Applies `scene_from_mesh`, then `millimetres_per_unit`, to the positions; leaves `placed` without normals. Spread
-/// over all cores, as are the others; the same bytes on any number of them.
-void place_positions(const MeshShape& shape, const glm::mat4& scene_from_mesh, double millimetres_per_unit,
-                     PlacedShape& placed);
+/// Applies `scene_from_mesh`, then `millimetres_per_unit`, to the positions (at least one) and gives their bounds;
+/// leaves `placed` without normals. Spread over all cores, as are the others; the same bytes on any number of them.
+Bounds place_positions(const MeshShape& shape, const glm::mat4& scene_from_mesh, double millimetres_per_unit,
+                       PlacedShape& placed);
 
 /// Gives `placed` its normals: those of `shape` turned; computed ones where it has none, or one of no length.
 void place_normals(const MeshTopology& topology, const MeshShape& shape, const glm::mat4& scene_from_mesh,

@@ -23,8 +23,11 @@ HWY_INLINE V fresnel_transmittance(float refractive_index, V cosine) {
   const V inside = hn::Sqrt(
       hn::Max(hn::Zero(d), hn::NegMulAdd(sine2, hn::Set(d, 1.0f / (refractive_index * refractive_index)), one)));
   const V bent = hn::Mul(eta, inside), steep = hn::Mul(eta, cosine);
-  const V s = hn::Div(hn::Sub(cosine, bent), hn::Add(cosine, bent));
-  const V p = hn::Div(hn::Sub(inside, steep), hn::Add(inside, steep));
+  // One quotient for both ratios. At an index of 1 and a grazing angle there is nothing below them.
+  const V below_s = hn::Add(cosine, bent), below_p = hn::Add(inside, steep);
+  const V inverse = hn::Div(one, hn::Max(hn::Mul(below_s, below_p), hn::Set(d, 1e-30f)));
+  const V s = hn::Mul(hn::Mul(hn::Sub(cosine, bent), below_p), inverse);
+  const V p = hn::Mul(hn::Mul(hn::Sub(inside, steep), below_s), inverse);
   return hn::NegMulAdd(hn::Set(d, 0.5f), hn::MulAdd(s, s, hn::Mul(p, p)), one);
 }
 
@@ -35,28 +38,31 @@ void add_light(const LightStorage& light, float refractive_index, const SurfaceP
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   for (size_t i = 0; i < count; i += hn::Lanes(d)) {
     V x = hn::Set(d, light.position_mm.x), y = hn::Set(d, light.position_mm.y), z = hn::Set(d, light.position_mm.z);
-    V share = one;
     if constexpr (!kDirectional) {
       x = hn::Sub(x, hn::Load(d, points.x + i));
       y = hn::Sub(y, hn::Load(d, points.y + i));
       z = hn::Sub(z, hn::Load(d, points.z + i));
+    }
+    V cosine =
+        hn::MulAdd(x, hn::Load(d, points.normal_x + i),
+                   hn::MulAdd(y, hn::Load(d, points.normal_y + i), hn::Mul(z, hn::Load(d, points.normal_z + i))));
+    // Neighbours mostly turn away together.
+    if (hn::AllFalse(d, hn::Gt(cosine, zero))) continue;
+    V share = one, inverse = one;
+    if constexpr (!kDirectional) {
       const V squared = hn::Max(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))), hn::Set(d, 1e-12f));
       share = hn::Div(one, squared);
-      const V inverse = hn::Sqrt(share);
-      x = hn::Mul(x, inverse), y = hn::Mul(y, inverse), z = hn::Mul(z, inverse);
+      inverse = hn::Sqrt(share);
     }
+    cosine = hn::Min(hn::Max(hn::Mul(cosine, inverse), zero), one);
     if constexpr (kSpot) {
       const V along = hn::MulAdd(x, hn::Set(d, light.axis.x),
                                  hn::MulAdd(y, hn::Set(d, light.axis.y), hn::Mul(z, hn::Set(d, light.axis.z))));
-      const V inwards = hn::Mul(hn::Sub(hn::Neg(along), hn::Set(d, light.axis.a)), hn::Set(d, light.shape.x));
+      const V inwards = hn::Mul(hn::NegMulAdd(along, inverse, hn::Set(d, -light.axis.a)), hn::Set(d, light.shape.x));
       const V cone = hn::Min(hn::Max(inwards, zero), one);
       const V smooth = hn::NegMulAdd(hn::Set(d, 2.0f), cone, hn::Set(d, 3.0f));
       share = hn::Mul(share, hn::Mul(hn::Mul(cone, cone), smooth));
     }
-    const V facing =
-        hn::MulAdd(x, hn::Load(d, points.normal_x + i),
-                   hn::MulAdd(y, hn::Load(d, points.normal_y + i), hn::Mul(z, hn::Load(d, points.normal_z + i))));
-    const V cosine = hn::Min(hn::Max(facing, zero), one);
     if (seen != nullptr) share = hn::Mul(share, hn::LoadU(d, seen + i));
     share = hn::Mul(share, hn::Mul(cosine, fresnel_transmittance(refractive_index, cosine)));
     for (int c = 0; c < 3; ++c) {

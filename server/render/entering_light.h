@@ -10,6 +10,7 @@ namespace diaphane::render {
 /// Points of a surface side by side: positions in mm and unit normals.
 struct SurfacePoints {
   static constexpr size_t kCapacity = 256;
+  static constexpr size_t kPadding = 16;  ///< whole vectors: points up to its next multiple are read
   alignas(64) float x[kCapacity], y[kCapacity], z[kCapacity];
   alignas(64) float normal_x[kCapacity], normal_y[kCapacity], normal_z[kCapacity];
 
@@ -26,7 +27,7 @@ struct EnteringLight {
 
 /// Adds what `light` sends into the body at the first `count` points: clamped cosine and Fresnel transmittance (paper
 /// Eq. 4), times `seen` (0..1, one for each point) unless that is null. As entering_irradiance(), to rounding.
-/// Points up to the next multiple of sixteen are computed too and must be finite. Thread-safe.
+/// Points up to the next multiple of kPadding are computed too and must be finite. Thread-safe.
 void add_entering_light(const LightStorage& light, float refractive_index, const SurfacePoints& points, size_t count,
                         const float* seen, EnteringLight& sum);
 

@@ -18,6 +18,20 @@ struct SurfaceIrradiance {
   std::vector<glm::vec3> of_vertex;
 };
 
+/// What light falls on.
+struct LitSurface {
+  const diffusion::SurfaceTopology& topology;
+  const geometry::PlacedShape& shape;
+  std::span<const LightStorage> lights;
+  float refractive_index;
+};
+
+/// Where E of its triangles or vertices goes.
+struct Receivers {
+  std::span<glm::vec3> irradiance;
+  const float* seen;  ///< where not null, a row of that many values for each light
+};
+
 /// Computes E natively, spread over all cores; keeps its memory from call to call. One thread calls.
 class IrradianceStage {
  public:

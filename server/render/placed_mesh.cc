@@ -18,8 +18,7 @@ void PlacedMesh::update(const scene::Mesh& mesh, double millimetres_per_unit, St
     return;
   }
   clock.run("place", [&] {
-    geometry::place_positions(*mesh.shape, mesh.scene_from_mesh, millimetres_per_unit, placed_);
-    bounds_mm_ = geometry::bounds_of(placed_.positions_mm);
+    bounds_mm_ = geometry::place_positions(*mesh.shape, mesh.scene_from_mesh, millimetres_per_unit, placed_);
   });
   topology_ = mesh.topology;
   shape_ = mesh.shape;

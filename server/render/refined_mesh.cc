@@ -17,7 +17,9 @@ constexpr uint32_t kMaxVertices = 100'000;
 
 /// The smallest spacing over the distance on which the kernel is smooth: what linear interpolation across triangles
 /// leaves of the error falls with it (docs/integral.md).
-float share_of_smooth_distance(diffusion::Quality quality) { return quality == diffusion::Quality::kFine ? 0.5f : 1.0f; }
+float share_of_smooth_distance(diffusion::Quality quality) {
+  return quality == diffusion::Quality::kFine ? 0.5f : 1.0f;
+}
 
 /// The next quarter of an octave below, so that small changes do not split anew.
 float quarter_octave(float value) { return std::exp2(std::floor(4 * std::log2(value)) / 4); }
@@ -31,9 +33,28 @@ void RefinedMesh::lay_out(geometry::SubdividedMesh refined, uint32_t original_co
   std::vector<uint32_t> moved_to(source.size());
   for (uint32_t v = 0; v < source.size(); ++v) moved_to[source[v]] = v;
   midpoints_.clear();
+  std::vector<size_t> generation(source.size(), 0);
   for (uint32_t i = 0; i < refined.parents.size(); ++i) {
     const glm::uvec2& p = refined.parents[i];
-    midpoints_.push_back({moved_to[original_count + i], moved_to[p.x], moved_to[p.y]});
+    const size_t own = std::max(generation[p.x], generation[p.y]) + 1;
+    generation[original_count + i] = own;
+    if (midpoints_.size() < own) midpoints_.emplace_back();
+    midpoints_[own - 1].push_back({moved_to[original_count + i], moved_to[p.x], moved_to[p.y]});
+  }
+  for (std::vector<Midpoint>& midpoints : midpoints_) {
+    std::sort(midpoints.begin(), midpoints.end(),
+              [](const Midpoint& a, const Midpoint& b) { return a.vertex < b.vertex; });
+  }
+}
+
+/// Calls work(midpoint), parents before children, spread over all cores.
+template <typename Work>
+void RefinedMesh::for_each_midpoint(const Work& work) const {
+  for (const std::vector<Midpoint>& midpoints : midpoints_) {
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, midpoints.size(), 2048),
+                      [&](const tbb::blocked_range<size_t>& range) {
+                        for (size_t i = range.begin(); i != range.end(); ++i) work(midpoints[i]);
+                      });
   }
 }
 
@@ -50,9 +71,9 @@ void RefinedMesh::carry_over(const geometry::PlacedShape& placed) {
       if (normals_given_) shape_.normals[v] = placed.normals[source[v]];
     }
   });
-  for (const Midpoint& m : midpoints_) {
+  for_each_midpoint([&](const Midpoint& m) {
     shape_.positions_mm[m.vertex] = 0.5f * (shape_.positions_mm[m.a] + shape_.positions_mm[m.b]);
-  }
+  });
   if (normals_given_) complete_normals();
 }
 
@@ -60,18 +81,19 @@ void RefinedMesh::complete_normals() {
   if (!normals_given_ && shape_.flipped) {
     for (glm::vec3& n : shape_.normals) n = -n;
   }
-  for (const Midpoint& m : midpoints_) {
+  for_each_midpoint([&](const Midpoint& m) {
     const glm::vec3 sum = shape_.normals[m.a] + shape_.normals[m.b];
     const float length = glm::length(sum);
     shape_.normals[m.vertex] = length > 1e-6f ? sum / length : shape_.normals[m.a];
-  }
+  });
 }
 
 absl::Status RefinedMesh::update(const scene::Mesh& mesh, PlacedMesh& placed, const optics::Coefficients& material,
                                  diffusion::Quality quality, StageClock& clock) {
   const std::shared_ptr<const geometry::MeshTopology>& topology = mesh.topology;
   const glm::vec3 smooth_mm = diffusion::smooth_distance_mm(optics::make_dipole(material));
-  const float spacing_mm = share_of_smooth_distance(quality) * quarter_octave(std::min({smooth_mm.x, smooth_mm.y, smooth_mm.z}));
+  const float spacing_mm =
+      share_of_smooth_distance(quality) * quarter_octave(std::min({smooth_mm.x, smooth_mm.y, smooth_mm.z}));
   const float unit_mm = quarter_octave(std::max(placed.unit_mm(), 1e-12f));
   const bool new_topology = original_.lock() != topology;
   const bool split_again = splitting_reads_.renew({unit_mm, spacing_mm}) || new_topology;

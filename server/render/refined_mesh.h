@@ -16,8 +16,8 @@
 
 namespace diaphane::render {
 
-/// Splits and lays out once per topology, size, material and quality (see docs/integral.md), and carries every pose over. One
-/// thread.
+/// Splits and lays out once per topology, size, material and quality (see docs/integral.md), and carries every pose
+/// over. One thread.
 class RefinedMesh {
  public:
   /// Takes the normals that the client gave; else leaves them to whoever calls fill_normals(). Stage: refine.
@@ -38,17 +38,19 @@ class RefinedMesh {
   uint64_t generation() const { return generation_; }
 
  private:
-  /// A vertex half way between two others that come before it in this order.
+  /// A vertex half way between two others that are of generations before its own.
   struct Midpoint {
     uint32_t vertex, a, b;
   };
+  template <typename Work>
+  void for_each_midpoint(const Work& work) const;
   void lay_out(geometry::SubdividedMesh refined, uint32_t original_count);
   void carry_over(const geometry::PlacedShape& placed);
   void complete_normals();
 
   diffusion::OrderedSurface ordered_;
-  uint32_t original_count_ = 0;  ///< sources below are the mesh's own vertices
-  std::vector<Midpoint> midpoints_;
+  uint32_t original_count_ = 0;                   ///< sources below are the mesh's own vertices
+  std::vector<std::vector<Midpoint>> midpoints_;  ///< by generation, then by vertex
   geometry::PlacedShape shape_;
   bool normals_given_ = false;
   std::weak_ptr<const geometry::MeshTopology> original_;

@@ -199,6 +199,26 @@ TEST(DipoleIntegral, AddsLightsOfDifferentColours) {
   EXPECT_LE(std::max({error.x, error.y, error.z}), 0.01f);
 }
 
+TEST(DipoleIntegral, TellsColoursApartThatNeverMeet) {
+  // Large enough for parts of one colour each, with black between them.
+  const Mesh torus = testing::make_torus(7, 3, 96, 48);
+  DipoleIntegral integral(topology_of(torus));
+  const auto radiosity_by = [&](const glm::vec3& left, const glm::vec3& right) {
+    const auto irradiance = [&](const glm::vec3& p, const glm::vec3&) {
+      return p.x < -2 ? left : p.x > 2 ? right : glm::vec3(0);
+    };
+    return radiosity_of(integral, torus, irradiance, preset("marble"));
+  };
+  const auto both = radiosity_by({1, 0, 0}, {0, 0, 1});
+  const auto left = radiosity_by({1, 0, 0}, glm::vec3(0)), right = radiosity_by(glm::vec3(0), {0, 0, 1});
+  float largest = 0, error = 0;
+  for (size_t v = 0; v < both.size(); ++v) {
+    largest = std::max(largest, both[v].x + both[v].z);
+    error = std::max(error, glm::length(both[v] - left[v] - right[v]));
+  }
+  EXPECT_LE(error, 0.02f * largest);
+}
+
 TEST(DipoleIntegral, IsZeroInTheDark) {
   const Mesh torus = small_torus();
   DipoleIntegral integral(topology_of(torus));

@@ -60,6 +60,22 @@ TEST_P(EnteringLightOf, AddsToWhatIsThere) {
   EXPECT_FLOAT_EQ(twice.channel[0][0], 2 * once.channel[0][0]);
 }
 
+TEST_P(EnteringLightOf, OfASurfaceThatDoesNotBendItIsFiniteAtEveryAngle) {
+  SurfacePoints points{};
+  std::vector<glm::vec3> expected(16);
+  for (size_t i = 0; i < 16; ++i) {
+    // From full face over grazing to away.
+    const float turn = static_cast<float>(i) / 8;
+    const glm::vec3 normal = i == 8 ? glm::vec3(0, 1, 0) : glm::normalize(glm::vec3(0, turn, 1 - turn));
+    points.set(i, {0, 0, 0}, normal);
+    expected[i] = entering_irradiance(GetParam().light, {0, 0, 0}, normal, 1);
+  }
+  EnteringLight sum{};
+  add_entering_light(GetParam().light, 1, points, 16, nullptr, sum);
+  EXPECT_GT(expected[0].x, 0);
+  for (size_t i = 0; i < 16; ++i) EXPECT_NEAR(sum.channel[0][i], expected[i].x, 1e-4f * expected[0].x) << i;
+}
+
 const LightStorage kPoint{.position_mm = {5, 6, 30, 0}, .power = {900, 500, 100, 0}};
 const LightStorage kDirectional{.position_mm = {0.6f, 0, 0.8f, 0}, .power = {1, 2, 3, 1}};
 const LightStorage kSpot{.position_mm = {0, 0, 30, 0},

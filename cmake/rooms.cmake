@@ -1,9 +1,6 @@
 # What every target of the project shares.
 add_library(diaphane_flags INTERFACE)
 target_compile_options(diaphane_flags INTERFACE -Wall -Wextra -Wno-missing-field-initializers)
-# For what computes nothing (generated code, command lines, tests): half the time to compile, and nobody waits for it to run.
-add_library(diaphane_quick_to_build INTERFACE)
-target_compile_options(diaphane_quick_to_build INTERFACE -O1 $<$<CONFIG:RelWithDebInfo>:-g1>)
 if(DIAPHANE_SANITIZE)
   # Stacks need lines, not variables.
   target_compile_options(diaphane_flags INTERFACE -fsanitize=${DIAPHANE_SANITIZE} -fno-omit-frame-pointer -O1 -g1)

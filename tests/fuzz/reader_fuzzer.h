@@ -3,10 +3,9 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 
 #include "readers/source.h"
+#include "tests/fuzz/promises.h"
 
 namespace diaphane::fuzz {
 
@@ -19,12 +18,6 @@ inline readers::Source fuzzed_source() {
   source.limits.max_triangles = 100'000;
   source.limits.max_nodes = 1000;
   return source;
-}
-
-inline void require(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "broken promise: %s\n", what);
-  std::abort();
 }
 
 inline bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }

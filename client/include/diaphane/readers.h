@@ -36,8 +36,9 @@ struct LoadedFile {
 /// - OBJ, PLY, OFF: one mesh; vertex i is the file's vertex i. OBJ appends a copy of a vertex for every further pair of
 ///   normal and texture coordinate that its faces give it. Materials and groups are not read.
 /// - STL: one mesh per solid, corners at bit-equal positions welded.
-/// - glTF: one mesh per primitive and node, placed by its scene_from_mesh (a negative scale stays there), in rest pose,
-///   with the default morph weights applied. External buffers are opened only inside the file's own folder; images
+/// - glTF: one mesh per primitive and node (and instance of EXT_mesh_gpu_instancing), placed by its scene_from_mesh (a
+///   negative scale stays there), with the default morph weights applied. What has a skin comes posed by its joints at
+///   rest, in scene units. Draco's and meshoptimizer's compression is read. External buffers are opened only inside the file's own folder; images
 ///   never.
 /// - Normals come as the file has them, of any length; (0, 0, 0) where it has none for that vertex.
 /// - Colours of vertices come as linear RGB, cut to 0..1 and white where a vertex has none: glTF's COLOR_0 and PLY's
@@ -47,7 +48,7 @@ struct LoadedFile {
 ///
 /// Errors, each one line "PATH: what, where, range": kNotFound no such file; kPermissionDenied it cannot be opened;
 /// kInvalidArgument malformed (non-finite positions, indices out of range, truncated, ...) or nothing to render;
-/// kResourceExhausted past one of `limits`; kUnimplemented a feature that is named, such as Draco compression.
+/// kResourceExhausted past one of `limits`; kUnimplemented a feature that is named, such as an extension.
 /// Thread-safe.
 absl::StatusOr<LoadedFile> read_mesh_file(const std::filesystem::path& path, const ReadLimits& limits = {});
 

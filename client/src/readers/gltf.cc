@@ -10,8 +10,11 @@
 #include "readers/gltf_accessor.h"
 #include "readers/gltf_buffers.h"
 #include "readers/gltf_document.h"
+#include "readers/gltf_draco.h"
+#include "readers/gltf_matrix.h"
 #include "readers/gltf_model.h"
 #include "readers/gltf_scene.h"
+#include "readers/gltf_skin.h"
 #include "readers/mesh_builder.h"
 
 namespace diaphane::readers {
@@ -23,14 +26,21 @@ bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) 
 
 class GltfReader {
  public:
-  GltfReader(const tinygltf::Model& model, const GltfBuffers& buffers, const Source& source)
-      : model_(model), accessors_(model, buffers, source), source_(source) {}
+  GltfReader(const tinygltf::Model& model, const GltfExtensions& extensions, const GltfBuffers& buffers,
+             const Source& source)
+      : model_(model),
+        extensions_(extensions),
+        accessors_(model, extensions, buffers, source),
+        skins_(model, placement_, accessors_, source),
+        source_(source),
+        most_bytes_(24 * source.limits.max_vertices + 12 * source.limits.max_triangles) {}
 
   absl::StatusOr<LoadedFile> read() {
     file_.millimetres_per_unit = kMillimetresPerMetre;
-    const absl::StatusOr<std::vector<GltfInstance>> instances = place_gltf_meshes(model_, source_, file_.warnings);
-    if (!instances.ok()) return instances.status();
-    for (const GltfInstance& instance : *instances) {
+    absl::StatusOr<GltfPlacement> placement = place_gltf_meshes(model_, extensions_, accessors_, source_);
+    if (!placement.ok()) return placement.status();
+    placement_ = *std::move(placement);
+    for (const GltfInstance& instance : placement_.instances) {
       const tinygltf::Mesh& mesh = model_.meshes[instance.mesh];
       for (size_t primitive = 0; primitive < mesh.primitives.size(); ++primitive) {
         if (++primitives_ > source_.limits.max_nodes) {
@@ -62,22 +72,49 @@ class GltfReader {
       return absl::OkStatus();
     }
 
+    const int skin = instance.node >= 0 ? model_.nodes[static_cast<size_t>(instance.node)].skin : -1;
+    const absl::StatusOr<bool> is_posed = skins_.poses(skin, primitive);
+    if (!is_posed.ok()) return is_posed.status();
+    if (skin >= 0 && !*is_posed) ++skipped_["skins that cannot be applied"];
+    if (!*is_posed && determinant(instance.scene_from_mesh) == 0) {
+      ++skipped_["primitives of no volume (scale 0)"];
+      return absl::OkStatus();
+    }
+
     MeshData data;
-    absl::Status status = read_vertices(primitive, position->second, data);
+    absl::Status status = decompress(instance, index);
+    if (status.ok()) status = read_vertices(primitive, position->second, data);
     if (status.ok()) status = read_looks(primitive, data);
     if (status.ok()) status = apply_morphs(instance, primitive, data);
-    if (status.ok()) status = check_vertices(data, where(instance, index));
     if (status.ok()) status = read_triangles(primitive, where(instance, index), data);
+    if (status.ok() && *is_posed) status = skins_.pose(skin, primitive, where(instance, index), data);
+    if (status.ok()) status = check_vertices(data, where(instance, index));
     if (!status.ok()) return status;
     if (data.triangles.empty()) {
       ++skipped_["primitives without a triangle"];
       return absl::OkStatus();
     }
     data.name = name_of(instance, index);
-    std::transform(instance.scene_from_mesh.begin(), instance.scene_from_mesh.end(), data.scene_from_mesh.begin(),
-                   [](double value) { return static_cast<float>(value); });
+    if (!*is_posed) {
+      std::transform(instance.scene_from_mesh.begin(), instance.scene_from_mesh.end(), data.scene_from_mesh.begin(),
+                     [](double value) { return static_cast<float>(value); });
+    }
     file_.meshes.push_back(std::move(data));
     return absl::OkStatus();
+  }
+
+  // Puts what Draco compressed in the place of the primitive's accessors.
+  absl::Status decompress(const GltfInstance& instance, size_t index) {
+    accessors_.replace({});
+    const auto draco = extensions_.draco_of_primitive.find({instance.mesh, index});
+    if (draco == extensions_.draco_of_primitive.end()) return absl::OkStatus();
+    const std::string place = where(instance, index);
+    const absl::StatusOr<std::string_view> compressed = accessors_.view_bytes(draco->second.buffer_view, place);
+    if (!compressed.ok()) return compressed.status();
+    absl::StatusOr<GltfReplacedAccessors> decoded = decode_draco(model_, model_.meshes[instance.mesh].primitives[index],
+                                                                 draco->second, *compressed, place, source_);
+    if (decoded.ok()) accessors_.replace(*std::move(decoded));
+    return decoded.status();
   }
 
   static std::string where(const GltfInstance& instance, size_t primitive) {
@@ -99,6 +136,8 @@ class GltfReader {
     const uint64_t most = source_.limits.max_vertices;
     if (*count > most - vertices_) return source_.over_limit("vertices or more", most + 1, most);
     vertices_ += *count;
+    const absl::Status status = spend_bytes(primitive, *count);
+    if (!status.ok()) return status;
     absl::StatusOr<std::vector<Vec3>> positions = accessors_.read_vec3(position, *count);
     if (!positions.ok()) return positions.status();
     data.positions = *std::move(positions);
@@ -108,6 +147,16 @@ class GltfReader {
     if (!normals.ok()) return normals.status();
     data.normals = *std::move(normals);
     return absl::OkStatus();
+  }
+
+  // A bound on what instances multiply: as much as positions and normals of the most vertices and triangles take.
+  absl::Status spend_bytes(const tinygltf::Primitive& primitive, uint64_t vertices) {
+    uint64_t bytes = sizeof(Vec3);
+    if (primitive.attributes.contains("NORMAL")) bytes += sizeof(Vec3);
+    if (primitive.attributes.contains("COLOR_0")) bytes += sizeof(Rgb);
+    if (primitive.attributes.contains("TEXCOORD_0")) bytes += sizeof(TextureCoordinate);
+    bytes_ += bytes * vertices;
+    return bytes_ <= most_bytes_ ? absl::OkStatus() : source_.over_limit("bytes of vertices", bytes_, most_bytes_);
   }
 
   absl::Status read_looks(const tinygltf::Primitive& primitive, MeshData& data) {
@@ -228,9 +277,14 @@ class GltfReader {
   }
 
   const tinygltf::Model& model_;
+  const GltfExtensions& extensions_;
+  GltfPlacement placement_;
   GltfAccessors accessors_;
+  GltfSkins skins_;
   const Source& source_;
+  const uint64_t most_bytes_;
   LoadedFile file_;
+  uint64_t bytes_ = 0;
   uint64_t primitives_ = 0;
   uint64_t vertices_ = 0;
   uint64_t triangles_ = 0;
@@ -246,7 +300,7 @@ absl::StatusOr<LoadedFile> read_gltf(std::string bytes, const Source& source) {
   if (!buffers.ok()) return buffers.status();
   const absl::StatusOr<tinygltf::Model> model = parse_gltf_model(*document, source);
   if (!model.ok()) return model.status();
-  return GltfReader(*model, *buffers, source).read();
+  return GltfReader(*model, document->extensions, *buffers, source).read();
 }
 
 }  // namespace diaphane::readers

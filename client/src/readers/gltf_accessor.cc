@@ -1,108 +1,16 @@
 #include "readers/gltf_accessor.h"
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstring>
-
 #include "fmt/format.h"
+#include "readers/gltf_component.h"
 
 namespace diaphane::readers {
-namespace {
 
-// glTF is little-endian, and so is every machine that this is built for.
-template <typename T>
-T load(const char* data) {
-  T value;
-  std::memcpy(&value, data, sizeof(value));
-  return value;
-}
-
-// One component as glTF 2.0 section 3.11 and KHR_mesh_quantization map it.
-float load_component(const char* data, int component, bool normalized) {
-  switch (component) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: {
-      const float value = load<int8_t>(data);
-      return normalized ? std::max(value / 127.0f, -1.0f) : value;
-    }
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: {
-      const float value = load<uint8_t>(data);
-      return normalized ? value / 255.0f : value;
-    }
-    case TINYGLTF_COMPONENT_TYPE_SHORT: {
-      const float value = load<int16_t>(data);
-      return normalized ? std::max(value / 32767.0f, -1.0f) : value;
-    }
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: {
-      const float value = load<uint16_t>(data);
-      return normalized ? value / 65535.0f : value;
-    }
-    default:
-      return load<float>(data);
-  }
-}
-
-size_t component_bytes(int component) {
-  return static_cast<size_t>(tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(component)));
-}
-
-// The leading components of an element, as many floats as T is made of.
-template <typename T>
-T load_floats(const char* data, const tinygltf::Accessor& accessor) {
-  constexpr size_t kCount = sizeof(T) / sizeof(float);
-  std::array<float, kCount> values;
-  const size_t step = component_bytes(accessor.componentType);
-  for (size_t i = 0; i < kCount; ++i) {
-    values[i] = load_component(data + i * step, accessor.componentType, accessor.normalized);
-  }
-  return std::bit_cast<T>(values);
-}
-
-size_t element_bytes(const tinygltf::Accessor& accessor) {
-  return component_bytes(accessor.componentType) *
-         static_cast<size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type)));
-}
-
-uint32_t load_index(const char* data, int component) {
-  switch (component) {
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return load<uint8_t>(data);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return load<uint16_t>(data);
-    default:
-      return load<uint32_t>(data);
-  }
-}
-
-bool is_index_type(int component) {
-  return component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
-         component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-}
-
-bool is_any_type(const tinygltf::Accessor& accessor) {
-  const int component = accessor.componentType;
-  return component == TINYGLTF_COMPONENT_TYPE_FLOAT ||
-         (component >= TINYGLTF_COMPONENT_TYPE_BYTE && component <= TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
-}
-
-bool is_unit_type(const tinygltf::Accessor& accessor) {
-  const int component = accessor.componentType;
-  return component == TINYGLTF_COMPONENT_TYPE_FLOAT ||
-         (accessor.normalized &&
-          (component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT));
-}
-
-bool uses_draco(const tinygltf::Model& model) {
-  return std::find(model.extensionsUsed.begin(), model.extensionsUsed.end(), "KHR_draco_mesh_compression") !=
-         model.extensionsUsed.end();
-}
-
-}  // namespace
-
-GltfAccessors::GltfAccessors(const tinygltf::Model& model, const GltfBuffers& buffers, const Source& source)
+GltfAccessors::GltfAccessors(const tinygltf::Model& model, const GltfExtensions& extensions, const GltfBuffers& buffers,
+                             const Source& source)
     : model_(model),
       buffers_(buffers),
       source_(source),
+      meshopt_views_(extensions, buffers, source),
       most_elements_(6 * source.limits.max_vertices + 3 * source.limits.max_triangles) {}
 
 absl::StatusOr<const tinygltf::Accessor*> GltfAccessors::find(int accessor) const {
@@ -119,10 +27,13 @@ absl::StatusOr<uint64_t> GltfAccessors::count(int accessor) const {
   return (*found)->count;
 }
 
-absl::Status GltfAccessors::spend(uint64_t elements, uint64_t expected, std::string_view where) {
-  if (elements != expected) {
-    return source_.malformed(fmt::format("{} elements", elements), where, fmt::format("must be {}", expected));
-  }
+absl::Status GltfAccessors::check_count(const tinygltf::Accessor& accessor, uint64_t count,
+                                        std::string_view where) const {
+  if (accessor.count == count) return absl::OkStatus();
+  return source_.malformed(fmt::format("{} elements", accessor.count), where, fmt::format("must be {}", count));
+}
+
+absl::Status GltfAccessors::spend(uint64_t elements, std::string_view where) {
   if (elements > most_elements_ - elements_) {
     return source_.error(absl::StatusCode::kResourceExhausted, "too many accessor elements", where,
                          fmt::format("must be at most {} in all", most_elements_));
@@ -131,13 +42,20 @@ absl::Status GltfAccessors::spend(uint64_t elements, uint64_t expected, std::str
   return absl::OkStatus();
 }
 
-absl::StatusOr<GltfAccessors::Elements> GltfAccessors::locate(int view, uint64_t offset, uint64_t element_bytes,
-                                                              uint64_t count, std::string_view where) const {
+absl::StatusOr<std::string_view> GltfAccessors::view_bytes(int view, std::string_view where) {
   if (view < 0 || static_cast<size_t>(view) >= model_.bufferViews.size()) {
     return source_.malformed(fmt::format("bufferView {}", view), where,
                              fmt::format("there are {}", model_.bufferViews.size()));
   }
   const tinygltf::BufferView& v = model_.bufferViews[static_cast<size_t>(view)];
+  if (meshopt_views_.has(static_cast<size_t>(view))) {
+    const absl::StatusOr<std::string_view> decoded = meshopt_views_.decode(static_cast<size_t>(view));
+    if (decoded.ok() && decoded->size() != v.byteLength) {
+      return source_.malformed(fmt::format("byteLength {} of bufferView {}", v.byteLength, view), where,
+                               fmt::format("{} bytes were compressed", decoded->size()));
+    }
+    return decoded;
+  }
   if (v.buffer < 0 || static_cast<size_t>(v.buffer) >= buffers_.size()) {
     return source_.malformed(fmt::format("buffer {} of bufferView {}", v.buffer, view), where,
                              fmt::format("there are {}", buffers_.size()));
@@ -147,18 +65,35 @@ absl::StatusOr<GltfAccessors::Elements> GltfAccessors::locate(int view, uint64_t
     return source_.malformed(fmt::format("bytes {} + {} of bufferView {}", v.byteOffset, v.byteLength, view), where,
                              fmt::format("the buffer has {}", bytes.size()));
   }
-  const uint64_t stride = v.byteStride == 0 ? element_bytes : v.byteStride;
+  return bytes.substr(v.byteOffset, v.byteLength);
+}
+
+absl::StatusOr<GltfAccessors::Elements> GltfAccessors::locate(int view, uint64_t offset, uint64_t element_bytes,
+                                                              uint64_t count, std::string_view where) {
+  const absl::StatusOr<std::string_view> bytes = view_bytes(view, where);
+  if (!bytes.ok()) return bytes.status();
+  const size_t byte_stride = model_.bufferViews[static_cast<size_t>(view)].byteStride;
+  const uint64_t stride = byte_stride == 0 ? element_bytes : byte_stride;
   if (stride < element_bytes) {
     return source_.malformed(fmt::format("byteStride {} of bufferView {}", stride, view), where,
                              fmt::format("must be at least {}", element_bytes));
   }
   // In this order nothing can overflow: what is multiplied later has been divided here.
-  const uint64_t room = offset > v.byteLength ? 0 : v.byteLength - offset;
+  const uint64_t room = offset > bytes->size() ? 0 : bytes->size() - offset;
   if (count > 0 && (room < element_bytes || count - 1 > (room - element_bytes) / stride)) {
     return source_.malformed(fmt::format("{} elements of {} bytes, {} apart", count, element_bytes, stride), where,
                              fmt::format("bufferView {} has {} bytes for them", view, room));
   }
-  return Elements{count > 0 ? bytes.data() + v.byteOffset + offset : nullptr, stride};
+  return Elements{count > 0 ? bytes->data() + offset : nullptr, stride};
+}
+
+absl::StatusOr<GltfAccessors::Elements> GltfAccessors::locate_accessor(int index, const tinygltf::Accessor& accessor,
+                                                                       std::string_view where) {
+  const size_t size = element_bytes(accessor);
+  if (const auto replaced = replaced_.find(index); replaced != replaced_.end()) {
+    return Elements{replaced->second.data(), size};
+  }
+  return locate(accessor.bufferView, accessor.byteOffset, size, accessor.count, where);
 }
 
 struct GltfAccessors::AttributeForm {
@@ -189,6 +124,36 @@ absl::StatusOr<std::vector<TextureCoordinate>> GltfAccessors::read_texture_coord
       {{TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC2}, is_any_type, "must be VEC2 of floats or of 8 or 16 bit integers"});
 }
 
+absl::StatusOr<std::vector<GltfFloat4>> GltfAccessors::read_joints(int accessor, uint64_t count) {
+  return read<GltfFloat4>(
+      accessor, count,
+      {{TINYGLTF_TYPE_VEC4, TINYGLTF_TYPE_VEC4}, is_joint_type, "must be VEC4 of unsigned 8 or 16 bit integers"});
+}
+
+absl::StatusOr<std::vector<GltfFloat4>> GltfAccessors::read_weights(int accessor, uint64_t count) {
+  return read<GltfFloat4>(accessor, count,
+                          {{TINYGLTF_TYPE_VEC4, TINYGLTF_TYPE_VEC4},
+                           is_unit_type,
+                           "must be VEC4 of floats or of normalised unsigned 8 or 16 bit integers"});
+}
+
+absl::StatusOr<std::vector<std::array<float, 16>>> GltfAccessors::read_matrices(int accessor, uint64_t count) {
+  return read<std::array<float, 16>>(
+      accessor, count, {{TINYGLTF_TYPE_MAT4, TINYGLTF_TYPE_MAT4}, is_float_type, "must be MAT4 of floats"});
+}
+
+absl::StatusOr<std::vector<Vec3>> GltfAccessors::read_offsets(int accessor, uint64_t count) {
+  return read<Vec3>(accessor, count,
+                    {{TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC3}, is_float_type, "must be VEC3 of floats"});
+}
+
+absl::StatusOr<std::vector<GltfFloat4>> GltfAccessors::read_quaternions(int accessor, uint64_t count) {
+  return read<GltfFloat4>(accessor, count,
+                          {{TINYGLTF_TYPE_VEC4, TINYGLTF_TYPE_VEC4},
+                           is_rotation_type,
+                           "must be VEC4 of floats or of normalised 8 or 16 bit integers"});
+}
+
 absl::StatusOr<const tinygltf::Accessor*> GltfAccessors::find_attribute(int index, uint64_t count,
                                                                         const AttributeForm& form,
                                                                         std::string_view where) {
@@ -199,10 +164,10 @@ absl::StatusOr<const tinygltf::Accessor*> GltfAccessors::find_attribute(int inde
     return source_.malformed(fmt::format("type {} of component type {}", accessor.type, accessor.componentType), where,
                              form.range);
   }
-  const absl::Status status = spend(accessor.count, count, where);
+  absl::Status status = check_count(accessor, count, where);
+  if (status.ok()) status = spend(count, where);
   if (!status.ok()) return status;
-  if (accessor.bufferView < 0 && !accessor.sparse.isSparse && !form.may_be_absent) {
-    if (uses_draco(model_)) return source_.unsupported("Draco compression (KHR_draco_mesh_compression)", where);
+  if (!has_data(index, accessor) && !accessor.sparse.isSparse && !form.may_be_absent) {
     return source_.malformed("no data", where, "must have a bufferView or be sparse");
   }
   return &accessor;
@@ -215,9 +180,8 @@ absl::StatusOr<std::vector<T>> GltfAccessors::read(int index, uint64_t count, co
   if (!found.ok()) return found.status();
   const tinygltf::Accessor& accessor = **found;
   std::vector<T> values;
-  if (accessor.bufferView >= 0) {
-    const absl::StatusOr<Elements> elements =
-        locate(accessor.bufferView, accessor.byteOffset, element_bytes(accessor), count, where);
+  if (has_data(index, accessor)) {
+    const absl::StatusOr<Elements> elements = locate_accessor(index, accessor, where);
     if (!elements.ok()) return elements.status();
     values.resize(count);
     for (size_t i = 0; i < values.size(); ++i) values[i] = load_floats<T>((*elements)[i], accessor);
@@ -243,7 +207,7 @@ absl::Status GltfAccessors::apply_sparse(const tinygltf::Accessor& accessor, std
     return source_.malformed("sparse offsets or index type", where, "must be 0 or more, and unsigned");
   }
   const auto count = static_cast<uint64_t>(sparse.count);
-  const absl::Status status = spend(count, count, where);
+  const absl::Status status = spend(count, where);
   if (!status.ok()) return status;
   const absl::StatusOr<Elements> indices =
       locate(sparse.indices.bufferView, static_cast<uint64_t>(sparse.indices.byteOffset),
@@ -273,10 +237,10 @@ absl::StatusOr<std::vector<uint32_t>> GltfAccessors::read_indices(int index, uin
                              "indices must be SCALAR of unsigned integers");
   }
   if (accessor.sparse.isSparse) return source_.unsupported("a sparse accessor of indices", where);
-  const absl::Status status = spend(accessor.count, count, where);
+  absl::Status status = check_count(accessor, count, where);
+  if (status.ok()) status = spend(count, where);
   if (!status.ok()) return status;
-  const absl::StatusOr<Elements> elements =
-      locate(accessor.bufferView, accessor.byteOffset, component_bytes(accessor.componentType), count, where);
+  const absl::StatusOr<Elements> elements = locate_accessor(index, accessor, where);
   if (!elements.ok()) return elements.status();
   std::vector<uint32_t> indices(count);
   for (size_t i = 0; i < indices.size(); ++i) indices[i] = load_index((*elements)[i], accessor.componentType);

@@ -62,11 +62,12 @@ absl::StatusOr<std::string> load_file(const std::string& uri, size_t index, uint
   return read_whole_file(target, max_bytes, buffer);
 }
 
-bool uses_meshopt(const json& document) {
-  const auto used = document.find("extensionsUsed");
-  if (used == document.end()) return false;
-  return std::any_of(used->begin(), used->end(), [](const json& entry) {
-    return entry == "EXT_meshopt_compression" || entry == "KHR_meshopt_compression";
+// A buffer without data, in the place of which meshopt's compressed views are read.
+bool is_fallback(const json& entry) {
+  const auto extensions = entry.find("extensions");
+  if (extensions == entry.end() || !extensions->is_object()) return false;
+  return std::any_of(extensions->begin(), extensions->end(), [](const json& extension) {
+    return extension.is_object() && extension.value("fallback", json(false)) == json(true);
   });
 }
 
@@ -89,10 +90,11 @@ absl::StatusOr<GltfBuffers> GltfBuffers::load(GltfDocument& document, const Sour
 
     std::string_view view;
     if (uri == entry.end()) {
-      if (index != 0 || !document.has_chunk) {
-        if (uses_meshopt(document.json)) return source.unsupported("meshopt compression", where);
-        return source.malformed("no uri and no binary chunk", where);
+      if (is_fallback(entry)) {
+        buffers.views_.emplace_back();
+        continue;
       }
+      if (index != 0 || !document.has_chunk) return source.malformed("no uri and no binary chunk", where);
       view = document.binary_chunk();
     } else if (uri->get_ref<const std::string&>().rfind("data:", 0) == 0) {
       const std::string text = std::move(uri->get_ref<std::string&>());

@@ -16,7 +16,8 @@ class GltfBuffers {
  public:
   /// Loads all: the GLB chunk, data URIs, and files inside source.folder (relative, no "..", no link that leads out).
   /// kInvalidArgument a buffer shorter than its byteLength, or a URI that may not be followed; kNotFound a file that is
-  /// missing; kResourceExhausted more than limits.max_file_bytes in all; kUnimplemented meshopt's buffers without data.
+  /// missing; kResourceExhausted more than limits.max_file_bytes in all. A fallback of meshopt's without a URI is
+  /// empty.
   static absl::StatusOr<GltfBuffers> load(GltfDocument& document, const Source& source);
 
   size_t size() const { return views_.size(); }

@@ -22,8 +22,8 @@ constexpr size_t kGlbChunkHeaderBytes = 8;
 constexpr uint32_t kGlbJson = 0x4e4f534a;
 constexpr uint32_t kGlbBinary = 0x004e4942;
 
-constexpr std::string_view kArrays[] = {"accessors", "buffers", "bufferViews",    "meshes",
-                                        "nodes",     "scenes",  "extensionsUsed", "extensionsRequired"};
+constexpr std::string_view kArrays[] = {"accessors", "buffers",        "bufferViews",       "meshes", "nodes", "scenes",
+                                        "skins",     "extensionsUsed", "extensionsRequired"};
 
 // Required extensions that change nothing of what is read here.
 constexpr std::string_view kHarmlessPrefixes[] = {"KHR_materials_", "KHR_texture_",  "KHR_lights_", "KHR_animation_",
@@ -101,7 +101,9 @@ absl::Status check_extensions(const json& root, const Source& source) {
     const std::string name = entry.is_string() ? entry.get<std::string>() : std::string();
     const bool harmless = std::any_of(std::begin(kHarmlessPrefixes), std::end(kHarmlessPrefixes),
                                       [&name](std::string_view prefix) { return name.rfind(prefix, 0) == 0; });
-    if (!harmless && name != "KHR_mesh_quantization") {
+    const bool is_read =
+        std::find(std::begin(kReadExtensions), std::end(kReadExtensions), name) != std::end(kReadExtensions);
+    if (!harmless && !is_read && name != "KHR_mesh_quantization") {
       return source.unsupported(fmt::format("required extension {}", in_quotes(name)));
     }
   }
@@ -136,7 +138,11 @@ absl::StatusOr<GltfDocument> parse_gltf_document(std::string bytes, const Source
   if (status.ok()) status = parse_json(text, document, source);
   if (status.ok()) status = check_version(document.json, source);
   if (status.ok()) status = check_extensions(document.json, source);
-  if (status.ok()) status = check_gltf_types(document.json, source);
+  if (!status.ok()) return status;
+  absl::StatusOr<GltfExtensions> extensions = take_gltf_extensions(document.json, source);
+  if (!extensions.ok()) return extensions.status();
+  document.extensions = *std::move(extensions);
+  status = check_gltf_types(document.json, source);
   if (!status.ok()) return status;
   if (!glb) document.bytes = {};
   const auto nodes = document.json.find("nodes");

@@ -6,15 +6,17 @@
 
 #include "absl/status/statusor.h"
 #include "nlohmann/json.hpp"
+#include "readers/gltf_extensions.h"
 #include "readers/source.h"
 
 namespace diaphane::readers {
 
 struct GltfDocument {
-  /// The root object: asset, scenes, nodes, meshes, accessors, bufferViews, buffers and the lists of extensions, all
-  /// arrays where they are there, of the types that glTF 2.0 asks for. Without extras and extension objects; nesting
-  /// and values bounded; integers beyond 32 bits as floating-point numbers.
+  /// The root object: asset, scenes, nodes, meshes, skins, accessors, bufferViews, buffers and the lists of extensions,
+  /// all arrays where they are there, of the types that glTF 2.0 asks for. Without extras, and without the extension
+  /// objects that are in `extensions`; nesting and values bounded; integers beyond 32 bits as floating-point numbers.
   nlohmann::json json;
+  GltfExtensions extensions;
 
   std::string bytes;  ///< of a GLB file, which binary_chunk() lies in
   size_t chunk_offset = 0;

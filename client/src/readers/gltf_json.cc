@@ -5,13 +5,15 @@
 #include <string_view>
 
 #include "fmt/format.h"
+#include "readers/gltf_extensions.h"
 
 namespace diaphane::readers {
 namespace {
 
-constexpr std::string_view kRootMembers[] = {"accessors", "asset",          "bufferViews",        "buffers", "scenes",
-                                             "scene",     "extensionsUsed", "extensionsRequired", "meshes",  "nodes"};
-constexpr std::string_view kLeftOut[] = {"extensions", "extras", "max", "min"};
+constexpr std::string_view kRootMembers[] = {"accessors", "asset", "bufferViews",    "buffers",
+                                             "scenes",    "scene", "extensionsUsed", "extensionsRequired",
+                                             "meshes",    "nodes", "skins"};
+constexpr std::string_view kLeftOut[] = {"extras", "max", "min"};
 constexpr int kNumberOutOfRange = 406;  // nlohmann::json::out_of_range
 
 template <size_t size>
@@ -44,8 +46,15 @@ bool GltfJsonBuilder::start_array(size_t) { return start(json::array()); }
 
 bool GltfJsonBuilder::key(std::string& name) {
   if (skipping_) return true;
-  skipping_ = open_.size() == 1 ? !contains(kRootMembers, name) : contains(kLeftOut, name);
-  if (!skipping_) member_ = &(*open_.back())[name];
+  if (open_.size() == 1) {
+    skipping_ = !contains(kRootMembers, name);
+  } else if (open_.back().is_extensions) {
+    skipping_ = !contains(kReadExtensions, name);
+  } else {
+    skipping_ = contains(kLeftOut, name);
+  }
+  if (!skipping_) member_ = &(*open_.back().container)[name];
+  member_is_extensions_ = name == "extensions";
   return true;
 }
 
@@ -66,7 +75,9 @@ bool GltfJsonBuilder::start(json container) {
     ++skipped_levels_;
     return true;
   }
-  open_.push_back(place(std::move(container)));
+  const bool is_extensions = member_is_extensions_ && container.is_object();
+  member_is_extensions_ = false;
+  open_.push_back({place(std::move(container)), is_extensions});
   return ++values_ <= kMostValues || stop(source_.over_limit("JSON values or more", values_, kMostValues));
 }
 
@@ -86,9 +97,9 @@ nlohmann::json* GltfJsonBuilder::place(json value) {
     root_ = std::move(value);
     return &root_;
   }
-  if (open_.back()->is_array()) {
-    open_.back()->push_back(std::move(value));
-    return &open_.back()->back();
+  if (json& innermost = *open_.back().container; innermost.is_array()) {
+    innermost.push_back(std::move(value));
+    return &innermost.back();
   }
   *member_ = std::move(value);
   return member_;

@@ -11,9 +11,9 @@
 
 namespace diaphane::readers {
 
-/// Takes nlohmann's SAX events (json::sax_parse). Left out are root members that are not read, extras, extension
-/// objects, and the min and max of accessors. nlohmann's own filtering parser would do but for its cost, which grows
-/// with the square of an array's length.
+/// Takes nlohmann's SAX events (json::sax_parse). Left out are root members that are not read, extras, extensions but
+/// kReadExtensions, and the min and max of accessors. nlohmann's own filtering parser would do but for its cost, which
+/// grows with the square of an array's length.
 class GltfJsonBuilder {
  public:
   using json = nlohmann::json;
@@ -53,8 +53,14 @@ class GltfJsonBuilder {
   const Source& source_;
   const uint64_t most_objects_;
   json root_;
-  std::vector<json*> open_;    // containers that have not ended; the outermost is root_
-  json* member_ = nullptr;     // of the innermost object, named and still without its value
+  struct Open {
+    json* container;
+    bool is_extensions;  // the value of a member of that name
+  };
+
+  std::vector<Open> open_;  // containers that have not ended; the outermost is root_
+  json* member_ = nullptr;  // of the innermost object, named and still without its value
+  bool member_is_extensions_ = false;
   bool skipping_ = false;      // the value of a member that is left out
   size_t skipped_levels_ = 0;  // containers of that value which have not ended
   uint64_t values_ = 0;

@@ -14,10 +14,28 @@ std::string first_line(const std::string& text) {
   return text.substr(begin, std::min<size_t>(text.find('\n', begin) - begin, 160));
 }
 
+// tinygltf asks for what glTF 2.0 leaves open; -1 stands for none.
+void give_skins_matrices(nlohmann::json& root) {
+  const auto skins = root.find("skins");
+  if (skins == root.end()) return;
+  for (nlohmann::json& skin : *skins) skin.emplace("inverseBindMatrices", -1);
+}
+
+// It also wants bytes behind every index; what Draco compressed has none.
+void put_back_indices(const GltfExtensions& extensions, tinygltf::Model& model) {
+  for (const auto& [place, draco] : extensions.draco_of_primitive) {
+    const auto& [mesh, primitive] = place;
+    if (mesh < model.meshes.size() && primitive < model.meshes[mesh].primitives.size()) {
+      model.meshes[mesh].primitives[primitive].indices = draco.indices;
+    }
+  }
+}
+
 }  // namespace
 
 absl::StatusOr<tinygltf::Model> parse_gltf_model(GltfDocument& document, const Source& source) {
   document.json.erase("buffers");
+  give_skins_matrices(document.json);
   const std::string text = document.json.dump();
   document.json = nullptr;
 
@@ -34,6 +52,7 @@ absl::StatusOr<tinygltf::Model> parse_gltf_model(GltfDocument& document, const S
   }
   // It also goes on without what it found wrong; half a scene is not what was asked for.
   if (!parsed || !errors.empty()) return source.malformed(fmt::format("is not glTF 2.0: {}", first_line(errors)));
+  put_back_indices(document.extensions, model);
   return model;
 }
 

@@ -7,8 +7,8 @@
 
 namespace diaphane::readers {
 
-/// Accessors, buffer views, meshes, nodes and scenes of `document`. Nothing that one names of another has been checked.
-/// Buffers are left out (see load_gltf_buffers()), and tinygltf is built without any access to files.
+/// Accessors, buffer views, meshes, nodes, skins and scenes of `document`. Nothing that one names of another has been
+/// checked. Buffers are left out (see load_gltf_buffers()), and tinygltf is built without any access to files.
 absl::StatusOr<tinygltf::Model> parse_gltf_model(GltfDocument& document, const Source& source);
 
 }  // namespace diaphane::readers

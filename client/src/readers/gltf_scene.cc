@@ -1,82 +1,44 @@
 #include "readers/gltf_scene.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numeric>
 
 #include "fmt/format.h"
 
 namespace diaphane::readers {
 namespace {
 
-using Matrix = std::array<double, 16>;  // column-major
-
-constexpr Matrix kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-
-Matrix multiply(const Matrix& a, const Matrix& b) {
-  Matrix product{};
-  for (size_t column = 0; column < 4; ++column) {
-    for (size_t row = 0; row < 4; ++row) {
-      for (size_t k = 0; k < 4; ++k) product[4 * column + row] += a[4 * k + row] * b[4 * column + k];
-    }
-  }
-  return product;
+template <size_t count>
+std::array<double, count> values_or(const std::vector<double>& values, std::array<double, count> otherwise) {
+  if (!values.empty()) std::copy_n(values.begin(), count, otherwise.begin());
+  return otherwise;
 }
 
-double determinant(const Matrix& m) {
-  return m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) + m[8] * (m[1] * m[6] - m[5] * m[2]);
-}
-
-// Translation · rotation · scale, glTF 2.0 section 3.5.3; the quaternion is x, y, z, w.
-Matrix compose(const std::vector<double>& translation, const std::vector<double>& rotation,
-               const std::vector<double>& scale) {
-  Matrix m = kIdentity;
-  if (!rotation.empty()) {
-    const double length = std::hypot(std::hypot(rotation[0], rotation[1]), std::hypot(rotation[2], rotation[3]));
-    const double x = rotation[0] / length, y = rotation[1] / length, z = rotation[2] / length, w = rotation[3] / length;
-    m = {1 - 2 * (y * y + z * z),
-         2 * (x * y + w * z),
-         2 * (x * z - w * y),
-         0,
-         2 * (x * y - w * z),
-         1 - 2 * (x * x + z * z),
-         2 * (y * z + w * x),
-         0,
-         2 * (x * z + w * y),
-         2 * (y * z - w * x),
-         1 - 2 * (x * x + y * y),
-         0,
-         0,
-         0,
-         0,
-         1};
-  }
-  for (size_t axis = 0; axis < 3; ++axis) {
-    for (size_t row = 0; row < 3; ++row) m[4 * axis + row] *= scale.empty() ? 1 : scale[axis];
-    m[12 + axis] = translation.empty() ? 0 : translation[axis];
-  }
-  return m;
-}
+bool is_zero(const std::array<double, 4>& rotation) { return rotation == std::array<double, 4>{}; }
 
 class ScenePlacer {
  public:
-  ScenePlacer(const tinygltf::Model& model, const Source& source, std::vector<std::string>& warnings)
-      : model_(model), source_(source), warnings_(warnings), reached_(model.nodes.size(), false) {}
+  ScenePlacer(const tinygltf::Model& model, const GltfExtensions& extensions, GltfAccessors& accessors,
+              const Source& source)
+      : model_(model),
+        extensions_(extensions),
+        accessors_(accessors),
+        source_(source),
+        reached_(model.nodes.size(), false) {
+    placement_.scene_from_node.resize(model.nodes.size());
+  }
 
-  absl::StatusOr<std::vector<GltfInstance>> place() {
+  absl::StatusOr<GltfPlacement> place() {
     const bool any_placed = std::any_of(model_.nodes.begin(), model_.nodes.end(),
                                         [](const tinygltf::Node& node) { return node.mesh >= 0; });
     if (!any_placed) {
-      for (size_t mesh = 0; mesh < model_.meshes.size(); ++mesh) instances_.push_back({mesh});
-      return std::move(instances_);
+      for (size_t mesh = 0; mesh < model_.meshes.size(); ++mesh) placement_.instances.push_back({mesh});
+      return std::move(placement_);
     }
     absl::StatusOr<std::vector<int>> roots = find_roots();
     if (!roots.ok()) return roots.status();
     const absl::Status status = walk(*roots);
     if (!status.ok()) return status;
-    if (flattened_ > 0) warnings_.push_back(fmt::format("left out: {} instances of no volume (scale 0)", flattened_));
-    return std::move(instances_);
+    return std::move(placement_);
   }
 
  private:
@@ -117,6 +79,7 @@ class ScenePlacer {
       const absl::StatusOr<Matrix> local = local_matrix(node, visit.node);
       if (!local.ok()) return local.status();
       const Matrix scene_from_node = multiply(visit.scene_from_parent, *local);
+      placement_.scene_from_node[static_cast<size_t>(visit.node)] = scene_from_node;
       status = place_mesh(node, visit.node, scene_from_node);
       if (status.ok()) status = put_off(node.children, scene_from_node);
     }
@@ -155,45 +118,85 @@ class ScenePlacer {
       }
       return matrix;
     }
-    if (!node.rotation.empty() &&
-        std::all_of(node.rotation.begin(), node.rotation.end(), [](double v) { return v == 0; })) {
-      return source_.malformed("a rotation of length 0", place, "must be a unit quaternion");
-    }
-    return compose(node.translation, node.rotation, node.scale);
+    const std::array<double, 4> rotation = values_or<4>(node.rotation, {0, 0, 0, 1});
+    if (is_zero(rotation)) return source_.malformed("a rotation of length 0", place, "must be a unit quaternion");
+    return compose(values_or<3>(node.translation, {0, 0, 0}), rotation, values_or<3>(node.scale, {1, 1, 1}));
   }
 
-  absl::Status place_mesh(const tinygltf::Node& node, int index, const Matrix& scene_from_mesh) {
+  absl::Status place_mesh(const tinygltf::Node& node, int index, const Matrix& scene_from_node) {
     if (node.mesh < 0) return absl::OkStatus();
     const Place place{"node", static_cast<uint64_t>(index)};
     if (static_cast<size_t>(node.mesh) >= model_.meshes.size()) {
       return source_.malformed(fmt::format("mesh {}", node.mesh), place,
                                fmt::format("there are {}", model_.meshes.size()));
     }
-    const bool fits = std::all_of(scene_from_mesh.begin(), scene_from_mesh.end(),
-                                  [](double value) { return std::abs(value) <= std::numeric_limits<float>::max(); });
-    if (!fits) return source_.malformed("a transform that is not finite", place);
-    if (determinant(scene_from_mesh) == 0) {
-      ++flattened_;
-    } else {
-      instances_.push_back({static_cast<size_t>(node.mesh), index, scene_from_mesh});
-    }
+    const auto instancing = extensions_.instancing_of_node.find(static_cast<size_t>(index));
+    return instancing == extensions_.instancing_of_node.end()
+               ? add_instance(node.mesh, index, scene_from_node)
+               : place_instances(node.mesh, index, scene_from_node, instancing->second);
+  }
+
+  absl::Status add_instance(int mesh, int node, const Matrix& scene_from_mesh) {
+    const Place place{"node", static_cast<uint64_t>(node)};
+    if (!fits_float(scene_from_mesh)) return source_.malformed("a transform that is not finite", place);
+    const size_t count = placement_.instances.size() + 1;
+    if (count > source_.limits.max_nodes) return source_.over_limit("instances", count, source_.limits.max_nodes);
+    placement_.instances.push_back({static_cast<size_t>(mesh), node, scene_from_mesh});
     return absl::OkStatus();
   }
 
+  // EXT_mesh_gpu_instancing: each transform goes between the node's and the mesh; one of no attributes is the node's.
+  absl::Status place_instances(int mesh, int node, const Matrix& scene_from_node, const GltfInstancing& instancing) {
+    uint64_t count = 1;
+    for (const int accessor : {instancing.translation, instancing.rotation, instancing.scale}) {
+      if (accessor < 0) continue;
+      const absl::StatusOr<uint64_t> elements = accessors_.count(accessor);
+      if (!elements.ok()) return elements.status();
+      count = *elements;
+    }
+    if (count > source_.limits.max_nodes) return source_.over_limit("instances", count, source_.limits.max_nodes);
+    std::vector<Vec3> translations(count), scales(count, Vec3{1, 1, 1});
+    std::vector<GltfFloat4> rotations(count, GltfFloat4{0, 0, 0, 1});
+    absl::Status status = read_if(instancing.translation, translations, &GltfAccessors::read_offsets);
+    if (status.ok()) status = read_if(instancing.scale, scales, &GltfAccessors::read_offsets);
+    if (status.ok()) status = read_if(instancing.rotation, rotations, &GltfAccessors::read_quaternions);
+    for (size_t i = 0; i < count && status.ok(); ++i) {
+      const auto& [x, y, z, w] = rotations[i];
+      const std::array<double, 4> rotation = {x, y, z, w};
+      if (is_zero(rotation)) {
+        return source_.malformed(fmt::format("rotation {} of length 0", i), Place{"node", static_cast<uint64_t>(node)},
+                                 "must be a unit quaternion");
+      }
+      const Matrix node_from_mesh = compose({translations[i].x, translations[i].y, translations[i].z}, rotation,
+                                            {scales[i].x, scales[i].y, scales[i].z});
+      status = add_instance(mesh, node, multiply(scene_from_node, node_from_mesh));
+    }
+    return status;
+  }
+
+  template <typename T>
+  absl::Status read_if(int accessor, std::vector<T>& values,
+                       absl::StatusOr<std::vector<T>> (GltfAccessors::*read)(int, uint64_t)) {
+    if (accessor < 0) return absl::OkStatus();
+    absl::StatusOr<std::vector<T>> elements = (accessors_.*read)(accessor, values.size());
+    if (elements.ok()) values = *std::move(elements);
+    return elements.status();
+  }
+
   const tinygltf::Model& model_;
+  const GltfExtensions& extensions_;
+  GltfAccessors& accessors_;
   const Source& source_;
-  std::vector<std::string>& warnings_;
   std::vector<bool> reached_;
   std::vector<Visit> open_;
-  std::vector<GltfInstance> instances_;
-  uint64_t flattened_ = 0;
+  GltfPlacement placement_;
 };
 
 }  // namespace
 
-absl::StatusOr<std::vector<GltfInstance>> place_gltf_meshes(const tinygltf::Model& model, const Source& source,
-                                                            std::vector<std::string>& warnings) {
-  return ScenePlacer(model, source, warnings).place();
+absl::StatusOr<GltfPlacement> place_gltf_meshes(const tinygltf::Model& model, const GltfExtensions& extensions,
+                                                GltfAccessors& accessors, const Source& source) {
+  return ScenePlacer(model, extensions, accessors, source).place();
 }
 
 }  // namespace diaphane::readers

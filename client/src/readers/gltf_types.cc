@@ -10,11 +10,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view kLists[] = {"accessors", "buffers", "bufferViews", "meshes", "nodes", "scenes"};
-constexpr std::string_view kIntegers[] = {"buffer",     "bufferView",    "byteLength", "byteOffset",
-                                          "byteStride", "componentType", "count",      "indices",
-                                          "mesh",       "mode",          "scene"};
-constexpr std::string_view kIntegerArrays[] = {"children", "nodes"};
+constexpr std::string_view kLists[] = {"accessors", "buffers", "bufferViews", "meshes", "nodes", "scenes", "skins"};
+constexpr std::string_view kIntegers[] = {
+    "buffer",  "bufferView", "byteLength", "byteOffset", "byteStride", "componentType",      "count",
+    "indices", "mesh",       "mode",       "scene",      "skin",       "inverseBindMatrices"};
+constexpr std::string_view kIntegerArrays[] = {"children", "joints", "nodes"};
 constexpr std::string_view kNumberArrays[] = {"matrix", "rotation", "scale", "translation", "weights"};
 constexpr std::string_view kObjectArrays[] = {"primitives", "targets"};
 

@@ -14,6 +14,8 @@
 namespace diaphane {
 namespace {
 
+constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";  // which some editors put before any text
+
 absl::StatusOr<LoadedFile> read_as(readers::MeshFormat format, std::string bytes, const readers::Source& source) {
   switch (format) {
     case readers::MeshFormat::kGltf:
@@ -39,6 +41,7 @@ absl::StatusOr<LoadedFile> read_mesh_file(const std::filesystem::path& path, con
   try {
     absl::StatusOr<std::string> bytes = readers::read_whole_file(path, limits.max_file_bytes, source);
     if (!bytes.ok()) return bytes.status();
+    if (bytes->starts_with(kUtf8Mark)) bytes->erase(0, kUtf8Mark.size());
     if (bytes->empty()) return source.malformed("is empty");
     const std::optional<readers::MeshFormat> format = readers::tell_format(*bytes, path.extension().string());
     if (!format) {

@@ -1,13 +1,11 @@
 // The meshes and the malformed files of the data that is shared with the project.
 #include <gmock/gmock.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <map>
 #include <sstream>
 
-#include "tests/unit/readers/mesh_files.h"
+#include "tests/unit/readers/read_apart.h"
 
 namespace diaphane::testing {
 namespace {
@@ -88,40 +86,6 @@ TEST(SharedMeshes, KeepTheirColoursAndTextureCoordinates) {
   EXPECT_EQ(looks_of("gltf/Fox.glb")[2], looks_of("gltf/Fox.glb")[0]);
 }
 
-struct Outcome {
-  bool exited = false;
-  std::string line;  // "read", or the status
-  long peak_kib = 0;
-};
-
-// Reads `path` in a process of its own, which may use 5 seconds of processor and not for ever.
-Outcome read_apart(const fs::path& path) {
-  int ends[2];
-  if (pipe(ends) != 0) return {};
-  const pid_t child = fork();
-  if (child == 0) {
-    const rlimit seconds{5, 5};
-    setrlimit(RLIMIT_CPU, &seconds);
-    alarm(60);
-    const auto file = read_mesh_file(path);
-    const std::string line = file.ok() ? "read" : file.status().ToString();
-    if (write(ends[1], line.data(), line.size()) < 0) _exit(2);
-    _exit(file.ok() && triangle_count(*file) == 0 ? 3 : 0);
-  }
-  close(ends[1]);
-  Outcome outcome;
-  char buffer[4096];
-  for (ssize_t got; (got = read(ends[0], buffer, sizeof(buffer))) > 0;)
-    outcome.line.append(buffer, static_cast<size_t>(got));
-  close(ends[0]);
-  int status = 0;
-  rusage usage{};
-  wait4(child, &status, 0, &usage);
-  outcome.exited = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  outcome.peak_kib = usage.ru_maxrss;
-  return outcome;
-}
-
 std::string code(absl::StatusCode status) { return absl::StatusCodeToString(status); }
 
 TEST(SharedMalformedFiles, AreReadOrRefusedInOneLine) {
@@ -130,13 +94,7 @@ TEST(SharedMalformedFiles, AreReadOrRefusedInOneLine) {
   for (const auto& entry : fs::recursive_directory_iterator(kData / "malformed")) {
     if (!entry.is_regular_file() || entry.path().extension() == ".exr") continue;
     const Outcome outcome = read_apart(entry.path());
-    EXPECT_TRUE(outcome.exited) << entry.path() << ": " << outcome.line;
-    EXPECT_LT(outcome.peak_kib, 1 << 20) << entry.path();
-    EXPECT_EQ(std::count(outcome.line.begin(), outcome.line.end(), '\n'), 0) << outcome.line;
-    if (outcome.line != "read") {
-      EXPECT_THAT(outcome.line, ::testing::HasSubstr(entry.path().string() + ": ")) << entry.path();
-      EXPECT_LT(outcome.line.size(), entry.path().string().size() + 300) << outcome.line;
-    }
+    expect_bounded(outcome, entry.path());
     ++outcomes[outcome.line.substr(0, outcome.line.find(':'))];
   }
   for (const auto& [outcome, count] : outcomes) {

@@ -17,7 +17,9 @@ constexpr uint32_t kMaxVertices = 100'000;
 
 /// The smallest spacing over the distance on which the kernel is smooth: what linear interpolation across triangles
 /// leaves of the error falls with it (docs/integral.md).
-float share_of_smooth_distance(diffusion::Quality quality) { return quality == diffusion::Quality::kFine ? 0.5f : 1.0f; }
+float share_of_smooth_distance(diffusion::Quality quality) {
+  return quality == diffusion::Quality::kFine ? 0.5f : 1.0f;
+}
 
 /// The next quarter of an octave below, so that small changes do not split anew.
 float quarter_octave(float value) { return std::exp2(std::floor(4 * std::log2(value)) / 4); }
@@ -71,7 +73,8 @@ absl::Status RefinedMesh::update(const scene::Mesh& mesh, PlacedMesh& placed, co
                                  diffusion::Quality quality, StageClock& clock) {
   const std::shared_ptr<const geometry::MeshTopology>& topology = mesh.topology;
   const glm::vec3 smooth_mm = diffusion::smooth_distance_mm(optics::make_dipole(material));
-  const float spacing_mm = share_of_smooth_distance(quality) * quarter_octave(std::min({smooth_mm.x, smooth_mm.y, smooth_mm.z}));
+  const float spacing_mm =
+      share_of_smooth_distance(quality) * quarter_octave(std::min({smooth_mm.x, smooth_mm.y, smooth_mm.z}));
   const float unit_mm = quarter_octave(std::max(placed.unit_mm(), 1e-12f));
   const bool new_topology = original_.lock() != topology;
   const bool split_again = splitting_reads_.renew({unit_mm, spacing_mm}) || new_topology;

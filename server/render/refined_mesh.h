@@ -16,8 +16,8 @@
 
 namespace diaphane::render {
 
-/// Splits and lays out once per topology, size, material and quality (see docs/integral.md), and carries every pose over. One
-/// thread.
+/// Splits and lays out once per topology, size, material and quality (see docs/integral.md), and carries every pose
+/// over. One thread.
 class RefinedMesh {
  public:
   /// Takes the normals that the client gave; else leaves them to whoever calls fill_normals(). Stage: refine.

@@ -65,7 +65,7 @@ absl::Status ScenePainter::refine(Job& job) {
   for (const DrawnMesh& drawn : job.meshes) {
     if (absl::Status status = check_cancelled(job); !status.ok()) return status;
     absl::Status status = drawn.state->refined.update(*drawn.mesh, drawn.state->placed, drawn.material,
-                                                       job.request.settings.quality, job.clock);
+                                                      job.request.settings.quality, job.clock);
     if (!status.ok()) return status;
   }
   return absl::OkStatus();
@@ -121,7 +121,8 @@ void ScenePainter::update_integral(const DrawnMesh& drawn, bool shadowed, Job& j
 absl::Status ScenePainter::update_lit(const DrawnMesh& drawn, Job& job) {
   MeshState& state = *drawn.state;
   state.placed.complete_normals(job.clock);
-  absl::Status status = state.lit.update(*drawn.mesh, state.placed, drawn.material, diffusion::Quality::kNormal, job.clock);
+  absl::Status status =
+      state.lit.update(*drawn.mesh, state.placed, drawn.material, diffusion::Quality::kNormal, job.clock);
   if (!status.ok()) return status;
   // Lambert's E is without Fresnel.
   const float refractive_index =

@@ -20,7 +20,8 @@ Mesh as_served(const Mesh& mesh, const optics::Coefficients& material, diffusion
   render::PlacedMesh placed;
   placed.update(*scene->meshes.front(), 1, clock);
   render::RefinedMesh refined;
-  if (const absl::Status status = refined.update(*scene->meshes.front(), placed, material, quality, clock); !status.ok()) {
+  if (const absl::Status status = refined.update(*scene->meshes.front(), placed, material, quality, clock);
+      !status.ok()) {
     throw std::runtime_error(std::string(status.message()));
   }
   return {refined.shape().positions_mm, refined.shape().normals, refined.topology()->triangles};

@@ -9,7 +9,7 @@ namespace {
 
 constexpr Coefficients kRedWax{{0.004f, 0.14f, 0.2f}, {1.3f, 1.15f, 1.05f}, 1.4f};
 constexpr Coefficients kWick{{4, 4, 4}, {0.4f, 0.35f, 0.3f}, 1.4f};
-constexpr Rgb kFlame_w_sr{60, 45, 26};
+constexpr Rgb kFlame{60, 45, 26};  // W·sr⁻¹
 constexpr float kFlameRadius_mm = 1.2f;
 constexpr float kGlobalGain = 1000;
 
@@ -28,7 +28,7 @@ absl::StatusOr<Section> figure_candle(const Studio& studio, const FigureOptions&
   Still still;
   still.bodies = {{candle(shape), {kRedWax}}, {wick(shape), {kWick}}};
   still.millimetres_per_unit = 1;
-  still.lights = {PointLight{flame(shape), kFlame_w_sr, kFlameRadius_mm}};
+  still.lights = {PointLight{flame(shape), kFlame, kFlameRadius_mm}};
   still.camera = {{0, 62, 100}, {0, 19.5f, 0}, {0, 1, 0}, 24};
   still.size = {options.size_px, options.size_px * 5 / 4};
   const RenderSettings settings[] = {by_paper({.global_gain = kGlobalGain}), by_integral()};

@@ -32,9 +32,9 @@ absl::StatusOr<Section> figure_terms(const Studio& studio, const FigureOptions& 
           "more of it where there is less in between.",
           kHeight_mm, kHeight_mm, kGlobalGain)};
   section.paragraphs.push_back(
-      "The hatching on the inner sides of the horns, the ears and the face is the paper's own: its test for hidden "
-      "points compares dot(N, P), and a point that is hidden from a cube face passes wherever it happens to lie in "
-      "the tangent plane of what hides it.");
+      "The hatching on the inner sides of the horns, the ears and the face is the kernel's: each of its few taps "
+      "repeats "
+      "the thin lit strip along an edge. More taps make it finer.");
   const LinearFrame* of_paper = &frames->at(2);
   const LinearFrame* of_integral = &frames->at(3);
   const double paper_ev = exposure_for({&of_paper, 1});

@@ -22,6 +22,10 @@ namespace {
 
 constexpr double kMillimetresPerMetre = 1000;
 
+bool is_normal(const Vec3& v) {
+  return std::abs(v.x) <= kLargestNormal && std::abs(v.y) <= kLargestNormal && std::abs(v.z) <= kLargestNormal;
+}
+
 bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 class GltfReader {
@@ -215,9 +219,9 @@ class GltfReader {
       }
     }
     for (Vec3& normal : data.normals) {
-      if (is_finite(normal)) continue;
+      if (is_normal(normal)) continue;
       normal = {};
-      ++skipped_["normals that are not finite"];
+      ++skipped_["normals that are not finite or beyond 1e18"];
     }
     for (TextureCoordinate& coordinate : data.texture_coordinates) {
       if (std::isfinite(coordinate.u) && std::isfinite(coordinate.v)) continue;

@@ -55,7 +55,8 @@ absl::Status MeshBuilder::repeat_vertex(uint32_t vertex) {
 
 void MeshBuilder::set_normal(uint32_t vertex, const Double3& normal) {
   if (mesh_.normals.size() <= vertex) mesh_.normals.resize(size_t{vertex} + 1);
-  if (fits_float(normal[0]) && fits_float(normal[1]) && fits_float(normal[2])) {
+  const auto fits = [](double coordinate) { return std::abs(coordinate) <= kLargestNormal; };
+  if (fits(normal[0]) && fits(normal[1]) && fits(normal[2])) {
     mesh_.normals[vertex] = to_float(normal);
   } else {
     ++bad_normals_;
@@ -145,7 +146,7 @@ absl::Status MeshBuilder::end_mesh(std::string_view name) {
 absl::StatusOr<LoadedFile> MeshBuilder::finish() {
   if (file_.meshes.empty()) return nothing_to_render(source_, vertices_);
   if (degenerate_ > 0) warn(fmt::format("left out: {} faces with fewer than three different corners", degenerate_));
-  if (bad_normals_ > 0) warn(fmt::format("left out: {} normals that are not finite", bad_normals_));
+  if (bad_normals_ > 0) warn(fmt::format("left out: {} normals that are not finite or beyond 1e18", bad_normals_));
   if (bad_colours_ > 0) warn(fmt::format("left out: {} colours that are not finite", bad_colours_));
   if (bad_texture_coordinates_ > 0) {
     warn(fmt::format("left out: {} texture coordinates that are not finite", bad_texture_coordinates_));

@@ -14,6 +14,9 @@
 
 namespace diaphane::readers {
 
+/// Beyond it, as the contract has it, a normal is refused.
+inline constexpr double kLargestNormal = 1e18;
+
 using Double3 = std::array<double, 3>;
 
 /// Builds a file's meshes one after the other. Checks what every format must: finite positions, indices in range, the

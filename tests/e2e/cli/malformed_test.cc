@@ -85,7 +85,7 @@ class MalformedFileTest : public CliWithServerTest {
     const long server_kib = peak_memory_kib(server_pid());
     EXPECT_GT(server_kib, 0) << "no server";
     EXPECT_LT(server_kib, kLargestMemory_kib);
-    EXPECT_TRUE(scenes().at("scenes").empty());
+    EXPECT_TRUE(scenes().empty());
     std::cout << std::fixed << std::setprecision(2) << "longest " << longest_.count()
               << " s; most memory: command line " << largest_kib_ / 1024 << " MiB, server " << server_kib / 1024
               << " MiB\n";

@@ -44,7 +44,7 @@ absl::StatusOr<std::unique_ptr<AnimationWriter>> open_webp(const std::filesystem
 
 /// An MP4, in the first of kMp4Encoders that this machine's libavcodec has and that opens.
 ///
-/// Errors: as for open_webp; UNIMPLEMENTED built without libavcodec; UNAVAILABLE it has none of the encoders.
+/// Errors: as for open_webp; kUnimplemented built without libavcodec; UNAVAILABLE it has none of the encoders.
 absl::StatusOr<std::unique_ptr<AnimationWriter>> open_mp4(const std::filesystem::path& path,
                                                           const AnimationOptions& options);
 

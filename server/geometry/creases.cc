@@ -1,9 +1,11 @@
 #include "geometry/creases.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
+#include "glm/common.hpp"
 #include "glm/geometric.hpp"
 
 namespace diaphane::geometry {
@@ -30,6 +32,18 @@ std::vector<Edge> sorted_edges(const MeshTopology& mesh) {
   std::sort(edges.begin(), edges.end());
   return edges;
 }
+
+/// A cell's neighbours and itself, faces before edges before corners.
+std::array<glm::ivec3, 27> steps_inside_out() {
+  std::array<glm::ivec3, 27> steps;
+  for (int i = 0; i < 27; ++i) steps[i] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+  std::stable_sort(steps.begin(), steps.end(), [](const glm::ivec3& a, const glm::ivec3& b) {
+    return glm::dot(glm::vec3(a), glm::vec3(a)) < glm::dot(glm::vec3(b), glm::vec3(b));
+  });
+  return steps;
+}
+
+const std::array<glm::ivec3, 27> kStepsInsideOut = steps_inside_out();
 
 }  // namespace
 
@@ -71,26 +85,24 @@ void CreaseField::add_segment(const glm::vec3& a, const glm::vec3& b) {
   for (int64_t i = 0; i <= steps; ++i) {
     const float t = steps > 0 ? static_cast<float>(static_cast<double>(i) / static_cast<double>(steps)) : 0;
     const glm::vec3 point = a + t * (b - a);
-    std::vector<glm::vec3>& points = points_of_cell_[cell_of(point, reach_mm_)];
     // One point for each step-sized cell is enough.
-    const Cell fine = cell_of(point, step_mm_);
-    const auto same = [&](const glm::vec3& p) { return cell_of(p, step_mm_) == fine; };
-    if (std::none_of(points.begin(), points.end(), same)) points.push_back(point);
+    if (sampled_.insert(cell_of(point, step_mm_)).second) points_of_cell_[cell_of(point, reach_mm_)].push_back(point);
   }
 }
 
 float CreaseField::distance_mm(const glm::vec3& point_mm) const {
   if (points_of_cell_.empty()) return reach_mm_;
   const Cell centre = cell_of(point_mm, reach_mm_);
+  const glm::vec3 inside(glm::dvec3(point_mm) - double{reach_mm_} * glm::dvec3(centre.x, centre.y, centre.z));
   float nearest2 = reach_mm_ * reach_mm_;
-  for (int64_t x = centre.x - 1; x <= centre.x + 1; ++x) {
-    for (int64_t y = centre.y - 1; y <= centre.y + 1; ++y) {
-      for (int64_t z = centre.z - 1; z <= centre.z + 1; ++z) {
-        const auto found = points_of_cell_.find(Cell{x, y, z});
-        if (found == points_of_cell_.end()) continue;
-        for (const glm::vec3& p : found->second) nearest2 = std::min(nearest2, glm::dot(p - point_mm, p - point_mm));
-      }
-    }
+  // The own cell first: where creases are dense, hardly another is near enough to be looked at.
+  for (const glm::ivec3& step : kStepsInsideOut) {
+    const glm::vec3 gap =
+        glm::max(glm::max(glm::vec3(step) * reach_mm_ - inside, inside - glm::vec3(step + 1) * reach_mm_), 0.0f);
+    if (glm::dot(gap, gap) >= nearest2) continue;
+    const auto found = points_of_cell_.find(Cell{centre.x + step.x, centre.y + step.y, centre.z + step.z});
+    if (found == points_of_cell_.end()) continue;
+    for (const glm::vec3& p : found->second) nearest2 = std::min(nearest2, glm::dot(p - point_mm, p - point_mm));
   }
   return std::sqrt(nearest2);
 }

@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "absl/container/flat_hash_map.h"
+#include "absl/container/flat_hash_set.h"
 #include "geometry/topology.h"
 #include "glm/vec3.hpp"
 
 namespace diaphane::geometry {
 
-/// Answers how far a point is from the nearest crease, to an eighth of `reach_mm`.
+/// Answers how far a point is from the nearest crease, to a quarter of `reach_mm`.
 class CreaseField {
  public:
   /// Creases of `mesh` at `positions_mm`: edges of the welded surface between triangles whose normals differ by more
@@ -36,6 +37,7 @@ class CreaseField {
 
   float reach_mm_;
   float step_mm_;
+  absl::flat_hash_set<Cell> sampled_;                                 ///< cells of step_mm
   absl::flat_hash_map<Cell, std::vector<glm::vec3>> points_of_cell_;  ///< cells of reach_mm
 };
 

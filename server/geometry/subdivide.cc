@@ -27,7 +27,6 @@ class Splitter {
   /// False, at once, when the mesh would outgrow its bound.
   bool run() {
     while (true) {
-      middle_of_edge_.clear();
       const size_t before = positions_mm_.size();
       for (const glm::uvec3& t : triangles_) {
         for (int k = 0; k < 3; ++k) decide(t[k], t[(k + 1) % 3]);
@@ -101,7 +100,7 @@ class Splitter {
   std::vector<glm::vec3> positions_mm_;
   std::vector<glm::uvec3> triangles_;
   std::vector<glm::uvec2> parents_;
-  absl::flat_hash_map<uint64_t, uint32_t> middle_of_edge_;
+  absl::flat_hash_map<uint64_t, uint32_t> middle_of_edge_;  ///< of every edge there was: none is judged twice
 };
 
 /// The least largest spacing that the bound on vertices allows: every edge, and every square of the surface, needs

@@ -5,8 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <map>
@@ -18,20 +16,18 @@
 #include "diffusion/dipole_integral.h"
 #include "diffusion/simd_level.h"
 #include "fmt/format.h"
-#include "glm/geometric.hpp"
-#include "optics/presets.h"
 #include "render/gl_renderer.h"
 #include "render/projection.h"
 #include "tbb/global_control.h"
 #include "tests/bench/lambert_frame.h"
+#include "tests/bench/timed_scenes.h"
 #include "tests/support/meshes.h"
 
 namespace diaphane {
 namespace {
 
 struct Settings {
-  std::vector<std::string> files = {"hand_7k7.ply", "demon_standin_goathead_48k.ply", "bunny_closed_72k.ply",
-                                    "neptune_227k.ply", "buddha_381k.ply"};
+  std::vector<std::string> files = bench::five_meshes();
   std::vector<int> threads = {1, 2};  ///< several: a process for each
   std::vector<std::string> simd = {""};
   std::vector<std::string> shadows = {"off", "on"};
@@ -51,64 +47,13 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kColumns = {
     {"gather", {"gather"}},
     {"draw", {"upload", "draw", "read_back"}}};
 
-constexpr glm::vec3 kLight{25, 30, 40};
-
 using Times = std::map<std::string, std::vector<double>>;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + static_cast<ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
-template <class Work>
-double milliseconds(const Work& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-}
-
-diffusion::Quality quality_of(const std::string& name) {
-  if (name == "draft") return diffusion::Quality::kDraft;
-  return name == "normal" ? diffusion::Quality::kNormal : diffusion::Quality::kFine;
-}
-
-std::shared_ptr<scene::SceneSnapshot> make_scene(const testing::Mesh& mesh, const Settings& settings) {
-  auto scene = std::make_shared<scene::SceneSnapshot>();
-  scene->name = "scenes/bench";
-  scene->materials.push_back({"material", settings.material, optics::find_preset(settings.material)->coefficients});
-  auto body = std::make_shared<scene::Mesh>();
-  body->name = "mesh";
-  body->material = "material";
-  body->topology = *geometry::build_topology(mesh.positions_mm, mesh.triangles);
-  scene->meshes.push_back(body);
-  if (settings.coloured) {
-    scene->lights.push_back({"a", scene::PointLight{{30, 20, 30}, {12000, 3000, 500}}});
-    scene->lights.push_back({"b", scene::PointLight{{-30, 10, -20}, {300, 2000, 12000}}});
-  } else {
-    scene->lights.push_back({"a", scene::PointLight{kLight, glm::vec3(12000)}});
-  }
-  return scene;
-}
-
-/// The mesh leaning to and fro.
-std::vector<glm::vec3> bend(const testing::Mesh& mesh, int frame) {
-  std::vector<glm::vec3> positions = mesh.positions_mm;
-  const float share = 0.02f * std::sin(0.3f * static_cast<float>(frame));
-  for (glm::vec3& p : positions) p.x += share * p.y;
-  return positions;
-}
-
-scene::Camera orbit(int frame) {
-  const float angle = 0.05f * static_cast<float>(frame);
-  return {{45 * std::sin(angle), 0, 45 * std::cos(angle)}, {0, 0, 0}, {0, 1, 0}, 30};
-}
 
 /// One frame; books its stages where `times` is given.
 void render(render::FrameRenderer& renderer, const render::FrameRequest& request, const std::string& kind,
             Times* times) {
   absl::StatusOr<render::Frame> frame;
-  const double whole = milliseconds([&] { frame = renderer.render(request, std::atomic<bool>(false)); });
+  const double whole = bench::milliseconds([&] { frame = renderer.render(request, std::atomic<bool>(false)); });
   if (!frame.ok()) throw std::runtime_error(std::string(frame.status().message()));
   if (times == nullptr) return;
   (*times)[kind].push_back(whole);
@@ -126,30 +71,26 @@ void render(render::FrameRenderer& renderer, const render::FrameRequest& request
 }
 
 Times measure(const testing::Mesh& mesh, const Settings& settings, bool shadows, render::FrameRenderer& renderer) {
-  const auto scene = make_scene(mesh, settings);
+  const auto scene = bench::make_scene(mesh, settings.material, bench::lights(settings.coloured));
   bench::LambertFrame lambert(mesh.triangles, settings.size_px);
   render::FrameRequest request;
   request.width_px = request.height_px = settings.size_px;
-  request.settings.quality = quality_of(settings.quality);
+  request.settings.quality = bench::quality_of(settings.quality);
   request.settings.shadows = shadows;
   Times times;
   for (int i = -3; i < settings.frames; ++i) {
     Times* booked = i < 0 ? nullptr : &times;
-    auto deformed = std::make_shared<scene::SceneSnapshot>(*scene);
-    auto body = std::make_shared<scene::Mesh>(*scene->meshes.front());
-    const std::vector<glm::vec3> positions = bend(mesh, i);
-    body->shape = std::make_shared<geometry::MeshShape>(geometry::MeshShape{positions, {}});
-    deformed->meshes.front() = body;
-    request.scene = deformed;
-    request.camera = orbit(0);
+    const std::vector<glm::vec3> positions = bench::leaning(mesh, i);
+    request.scene = bench::posed(*scene, positions);
+    request.camera = bench::orbit(0);
     render(renderer, request, "deforming", booked);
-    request.camera = orbit(i);
+    request.camera = bench::orbit(i);
     render(renderer, request, "camera", booked);
 
     const glm::mat4 clip = render::clip_from_world(request.camera, 1, 1, geometry::bounds_of(positions));
-    const double upload = milliseconds([&] { lambert.upload(positions, mesh.normals); });
-    const double first = milliseconds([&] { lambert.draw(clip, kLight); });
-    const double again = milliseconds([&] { lambert.draw(clip, kLight); });
+    const double upload = bench::milliseconds([&] { lambert.upload(positions, mesh.normals); });
+    const double first = bench::milliseconds([&] { lambert.draw(clip, bench::kLight); });
+    const double again = bench::milliseconds([&] { lambert.draw(clip, bench::kLight); });
     if (booked == nullptr) continue;
     times["lambert"].push_back(upload + first);
     times["lambert camera"].push_back(again);
@@ -175,12 +116,12 @@ nlohmann::json measure_row(const testing::Mesh& mesh, const std::string& file, c
   std::printf("%-14.14s %7zu %-5s %-3s %2d |", file.c_str(), mesh.triangles.size(), diffusion::simd_level().c_str(),
               shadows.c_str(), settings.threads.front());
   for (const std::string& name : column_names()) {
-    const double ms = median(times.at(name));
+    const double ms = bench::median(times.at(name));
     row["milliseconds"][name] = ms;
     std::printf(" %8.2f", ms);
   }
   const auto ratio = [&](const char* of, const char* to) {
-    const double value = median(times.at(of)) / median(times.at(to));
+    const double value = bench::median(times.at(of)) / bench::median(times.at(to));
     row["ratio"][of] = value;
     std::printf(" %5.2f", value);
   };

@@ -33,7 +33,7 @@ absl::StatusOr<PayloadSpec> make_spec(const scene::MeshCounts& counts, uint64_t 
 template <typename T>
 std::vector<T> take(std::span<const char>& bytes, size_t count) {
   std::vector<T> values(count);
-  std::memcpy(values.data(), bytes.data(), count * sizeof(T));
+  if (count > 0) std::memcpy(values.data(), bytes.data(), count * sizeof(T));
   bytes = bytes.subspan(count * sizeof(T));
   return values;
 }

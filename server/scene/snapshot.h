@@ -12,6 +12,7 @@
 #include "glm/mat4x4.hpp"
 #include "glm/vec3.hpp"
 #include "optics/dipole.h"
+#include "optics/environment.h"
 
 namespace diaphane::scene {
 
@@ -49,6 +50,15 @@ struct Light {
   LightKind kind;
 };
 
+/// Light from all around.
+struct Environment {
+  std::string name;                                       ///< scenes/{scene}/environment
+  std::shared_ptr<const optics::LatLongMap> map;          ///< as it was given
+  std::shared_ptr<const optics::EnvironmentLight> light;  ///< what it is to bodies
+  float rotation_deg = 0;                                 ///< about +y, counter-clockwise seen from above
+  float intensity = 1;                                    ///< multiplies both
+};
+
 struct Mesh {
   std::string name;  ///< scenes/{scene}/meshes/{mesh}
   std::string material;
@@ -67,6 +77,7 @@ struct SceneSnapshot {
   std::vector<std::shared_ptr<const Mesh>> meshes;
   std::vector<Material> materials;
   std::vector<Light> lights;
+  std::shared_ptr<const Environment> environment;  ///< null: none
 };
 
 }  // namespace diaphane::scene

@@ -45,7 +45,7 @@ absl::StatusOr<MaterialInfo> Scene::material(const MaterialHandle& handle) const
   request.set_name(handle.name);
   const auto response = connection_->call(connection_->scene_service(), &SceneStub::GetMaterial, request);
   if (!response.ok()) return response.status();
-  return info_from_proto(*response);
+  return internal::info_from_proto(*response);
 }
 
 absl::StatusOr<uint64_t> Scene::update_material(const MaterialHandle& handle, const Material& material) const {
@@ -143,7 +143,7 @@ absl::StatusOr<SceneDescription> Scene::describe() const {
 
   SceneDescription description{from_proto(*scene_answer)};
   for (const v1::Material& material : material_answer->materials()) {
-    description.materials.push_back(info_from_proto(material));
+    description.materials.push_back(internal::info_from_proto(material));
   }
   for (const v1::Light& light : light_answer->lights()) {
     description.lights.push_back({{light.name()}, from_proto(light)});

@@ -88,6 +88,18 @@ std::optional<std::vector<Channel>> parse_channels(std::string_view text) {
   }
 }
 
+std::optional<Exposure> parse_exposure(std::string_view text) {
+  constexpr std::string_view kAuto = "auto";
+  Exposure exposure;
+  exposure.found = text.substr(0, kAuto.size()) == kAuto;
+  if (exposure.found) text.remove_prefix(kAuto.size());
+  if (exposure.found && text.empty()) return exposure;
+  if (exposure.found && text.front() != '+' && text.front() != '-') return std::nullopt;
+  if (text.substr(0, 1) == "+") text.remove_prefix(1);
+  if (!parse_numbers(text, std::span<float>(&exposure.ev, 1))) return std::nullopt;
+  return exposure;
+}
+
 std::optional<Size> parse_size(std::string_view text) {
   const size_t x = text.find('x');
   Size size;
@@ -117,6 +129,8 @@ std::string profile_names() { return joined(std::span<const NamedProfile>(kProfi
 std::string shadows_names() { return joined(std::span<const NamedShadows>(kShadows)); }
 
 std::string channel_names() { return joined(std::span<const NamedChannel>(kChannels), ","); }
+
+std::string tone_mapping_names() { return joined(std::span<const NamedToneMapping>(kToneMappings)); }
 
 std::string terms_names() { return joined(std::span<const NamedTerms>(kTerms)); }
 

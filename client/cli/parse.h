@@ -26,6 +26,12 @@ std::optional<Light> parse_directional_light(std::string_view text);
 std::optional<Light> parse_spot_light(std::string_view text);
 /// Names between commas, each once.
 std::optional<std::vector<Channel>> parse_channels(std::string_view text);
+/// "auto", or stops that "auto" may be followed by: auto, -1.5, auto+1, auto-0.5.
+struct Exposure {
+  bool found = false;
+  float ev = 0;
+};
+std::optional<Exposure> parse_exposure(std::string_view text);
 std::optional<Size> parse_size(std::string_view text);  ///< WxH, both above 0
 
 /// By the file's extension, in any case.
@@ -38,5 +44,6 @@ std::string profile_names();
 std::string shadows_names();
 std::string terms_names();
 std::string channel_names();
+std::string tone_mapping_names();
 
 }  // namespace diaphane::cli

@@ -91,6 +91,13 @@ std::optional<Terms> parse_terms(std::string_view text) {
   return std::nullopt;
 }
 
+std::optional<ToneMapping> parse_tone_mapping(std::string_view text) {
+  for (const NamedToneMapping& entry : kToneMappings) {
+    if (entry.name == text) return entry.tone_mapping;
+  }
+  return std::nullopt;
+}
+
 void add_material_options(CLI::App& command, RenderArguments& arguments) {
   auto* material = command.add_option("--material", arguments.preset, "Material preset; see 'diaphane materials'");
   material->type_name("NAME");
@@ -137,7 +144,16 @@ void add_technique_options(CLI::App& command, RenderArguments& arguments) {
   add_parsed(command, "--face-size", "N", "Edge of its cube faces in texels, 16 to 2048", parse_count,
              arguments.face_size_px);
   add_parsed(command, "--global-gain", "G", "Multiplies its global term", parse_number, arguments.global_gain);
-  add_parsed(command, "--exposure", "EV", "Stops; not applied to EXR", parse_number, arguments.exposure_ev);
+}
+
+void add_picture_options(CLI::App& command, RenderArguments& arguments) {
+  add_parsed(command, "--samples", "N", "A pixel, 1 to 64 (default: 1)", parse_count, arguments.samples);
+  add_parsed(command, "--background", "R,G,B", "Linear colour where nothing is (default: transparent)", parse_rgb,
+             arguments.background);
+  add_parsed(command, "--exposure", "EV | auto[+-EV]", "Stops, or found for the frame; not applied to EXR",
+             parse_exposure, arguments.exposure);
+  add_parsed(command, "--tone-mapping", tone_mapping_names(), "How bright light is shown (default: none, it is cut)",
+             parse_tone_mapping, arguments.tone_mapping);
 }
 
 // Lights of one form; the flag may be repeated.
@@ -179,6 +195,7 @@ void add_render_options(CLI::App& command, RenderArguments& arguments) {
              arguments.channels);
   add_parsed(command, "--size", "WxH", "Pixels (default: 1280x720)", parse_size, arguments.size);
   add_technique_options(command, arguments);
+  add_picture_options(command, arguments);
   add_material_options(command, arguments);
   auto* unit = add_parsed(command, "--mm-per-unit", "S", "Size of a mesh unit in millimetres, above 0",
                           parse_above_zero, arguments.millimetres_per_unit);

@@ -8,6 +8,7 @@
 #include "CLI/CLI.hpp"
 #include "diaphane/render_options.h"
 #include "diaphane/values.h"
+#include "parse.h"
 
 namespace diaphane::cli {
 
@@ -26,7 +27,10 @@ struct RenderArguments {
   std::optional<uint32_t> kernel_taps;
   std::optional<uint32_t> face_size_px;
   std::optional<float> global_gain;
-  std::optional<float> exposure_ev;
+  std::optional<Exposure> exposure;
+  std::optional<ToneMapping> tone_mapping;
+  std::optional<uint32_t> samples;
+  std::optional<Rgb> background;
 
   std::optional<std::string> preset;
   std::optional<Rgb> absorption_mm;

@@ -105,7 +105,11 @@ void take_settings(const RenderArguments& arguments, RenderOptions* options) {
   if (arguments.kernel_taps) settings.paper.kernel_taps = *arguments.kernel_taps;
   if (arguments.face_size_px) settings.paper.face_size_px = *arguments.face_size_px;
   if (arguments.global_gain) settings.paper.global_gain = *arguments.global_gain;
-  if (arguments.exposure_ev) settings.exposure_ev = *arguments.exposure_ev;
+  if (arguments.exposure) settings.exposure_ev = arguments.exposure->ev;
+  if (arguments.exposure) settings.auto_exposure = arguments.exposure->found;
+  if (arguments.tone_mapping) settings.tone_mapping = *arguments.tone_mapping;
+  if (arguments.samples) settings.samples = *arguments.samples;
+  if (arguments.background) settings.background = arguments.background;
 }
 
 }  // namespace

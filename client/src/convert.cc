@@ -19,6 +19,8 @@ static_assert(int{v1::SHADOWS_OFF} == static_cast<int>(Shadows::kOff));
 static_assert(int{v1::TERMS_BOTH} == static_cast<int>(Terms::kBoth));
 static_assert(int{v1::TERMS_LOCAL} == static_cast<int>(Terms::kLocal));
 static_assert(int{v1::TERMS_GLOBAL} == static_cast<int>(Terms::kGlobal));
+static_assert(int{v1::TONE_MAPPING_NONE} == static_cast<int>(ToneMapping::kNone));
+static_assert(int{v1::TONE_MAPPING_NEUTRAL} == static_cast<int>(ToneMapping::kNeutral));
 static_assert(int{v1::IMAGE_FORMAT_PNG} == static_cast<int>(ImageFormat::kPng));
 static_assert(int{v1::IMAGE_FORMAT_JPEG} == static_cast<int>(ImageFormat::kJpeg));
 static_assert(int{v1::IMAGE_FORMAT_EXR} == static_cast<int>(ImageFormat::kExr));
@@ -98,6 +100,10 @@ v1::RenderSettings to_proto(const RenderSettings& settings) {
   message.set_exposure_ev(settings.exposure_ev);
   message.set_quality(static_cast<v1::Quality>(settings.quality));
   message.set_shadows(static_cast<v1::Shadows>(settings.shadows));
+  message.set_auto_exposure(settings.auto_exposure);
+  message.set_tone_mapping(static_cast<v1::ToneMapping>(settings.tone_mapping));
+  message.set_samples(settings.samples);
+  if (settings.background) *message.mutable_background()->mutable_color() = to_proto(*settings.background);
   return message;
 }
 
@@ -158,7 +164,13 @@ MeshInfo from_proto(const v1::Mesh& message) {
 RenderSettings from_proto(const v1::RenderSettings& message) {
   RenderSettings settings{.technique = static_cast<Technique>(message.technique()),
                           .shadows = static_cast<Shadows>(message.shadows()),
-                          .exposure_ev = message.exposure_ev()};
+                          .exposure_ev = message.exposure_ev(),
+                          .auto_exposure = message.auto_exposure()};
+  if (message.tone_mapping() != v1::TONE_MAPPING_UNSPECIFIED) {
+    settings.tone_mapping = static_cast<ToneMapping>(message.tone_mapping());
+  }
+  if (message.samples() != 0) settings.samples = message.samples();
+  if (message.background().has_color()) settings.background = rgb_from_proto(message.background().color());
   if (message.quality() != v1::QUALITY_UNSPECIFIED) settings.quality = static_cast<Quality>(message.quality());
   const v1::PaperSettings& paper = message.paper();
   if (paper.terms() != v1::TERMS_UNSPECIFIED) settings.paper.terms = static_cast<Terms>(paper.terms());
@@ -173,7 +185,8 @@ RenderedFrame from_proto(v1::RenderFrameResponse&& message) {
                       .content_type = message.content_type(),
                       .scene_revision = message.scene_revision(),
                       .size = {message.size().width_px(), message.size().height_px()},
-                      .path = message.path()};
+                      .path = message.path(),
+                      .exposure_ev = message.exposure_ev()};
   for (const v1::StageTime& stage : message.stages()) {
     frame.stages.push_back({stage.stage(), stage.milliseconds(), stage.ran()});
   }

@@ -39,7 +39,7 @@ Openings openings_of(Quality quality, const optics::Coefficients& material) {
     case Quality::kFine:
       break;
   }
-  return absorbing ? Openings{0.24f, 0.40f} : Openings{0.28f, 0.45f};
+  return Openings{0.24f, 0.40f};
 }
 
 struct DipoleIntegral::State {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "encode/srgb_profile.h"
 #include "fmt/format.h"
 
 namespace diaphane::encode {
@@ -24,6 +25,12 @@ absl::StatusOr<std::string> write(const char* name, const OIIO::ImageSpec& spec,
     return absl::InternalError(fmt::format("encoding {}: {}", name, output->geterror()));
   }
   return std::string(bytes.begin(), bytes.end());
+}
+
+// Of JPEG: PNG has a chunk that says sRGB.
+void attach_profile(OIIO::ImageSpec& spec) {
+  const std::vector<uint8_t>& profile = srgb_profile();
+  spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())), profile.data());
 }
 
 std::vector<uint8_t> over_black(const base::Image8& image) {
@@ -64,6 +71,7 @@ absl::StatusOr<std::string> encode_jpeg(const base::Image8& image, int quality) 
   OIIO::ImageSpec spec(static_cast<int>(image.width_px), static_cast<int>(image.height_px), 3, OIIO::TypeUInt8);
   spec.attribute("Compression", fmt::format("jpeg:{}", quality));
   spec.attribute("oiio:ColorSpace", "sRGB");
+  attach_profile(spec);
   return write("frame.jpg", spec, over_black(image).data());
 }
 

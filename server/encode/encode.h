@@ -10,8 +10,8 @@
 namespace diaphane::encode {
 
 enum class ImageFormat {
-  kPng,   ///< of an Image8: RGBA, lossless
-  kJpeg,  ///< of an Image8: RGB, laid over black
+  kPng,   ///< of an Image8: RGBA, lossless; says sRGB
+  kJpeg,  ///< of an Image8: RGB, laid over black; carries srgb_profile()
   kExr    ///< of an ImageF: its channels, 32-bit float
 };
 

@@ -13,6 +13,7 @@
 #include "absl/status/statusor.h"
 #include "base/image.h"
 #include "diffusion/dipole_integral.h"
+#include "glm/vec3.hpp"
 #include "scene/camera.h"
 #include "scene/snapshot.h"
 
@@ -33,13 +34,29 @@ struct PaperSettings {
   float global_gain = 1;        ///< 0..1000
 };
 
+/// How radiance becomes what a screen can show.
+enum class ToneMapping {
+  kNone,    ///< above 1 is cut
+  kNeutral  ///< tone_map_neutral()
+};
+
 struct RenderSettings {
   Technique technique = Technique::kIntegral;
   diffusion::Quality quality = diffusion::Quality::kNormal;  ///< of the integral
   std::optional<bool> shadows;  ///< not given: on for the integral and the reference, off for the others
   PaperSettings paper;
-  float exposure_ev = 0;  ///< stops; not applied to linear pixels
+  float exposure_ev = 0;                          ///< stops; not applied to linear pixels
+  bool auto_exposure = false;                     ///< adds find_exposure_ev() of the frame
+  ToneMapping tone_mapping = ToneMapping::kNone;  ///< not applied to linear pixels
+  uint32_t samples = 1;                           ///< a pixel, 1..64
+  std::optional<glm::vec3> background;            ///< linear colour, 0..1e6, where no surface is; not given: nothing
 };
+
+/// Whether 8-bit pixels are made from linear ones, and not by the driver as it stores them.
+inline bool needs_developing(const RenderSettings& settings) {
+  return settings.samples > 1 || settings.auto_exposure || settings.tone_mapping != ToneMapping::kNone ||
+         settings.background.has_value();
+}
 
 /// Whether the meshes of a frame hide lights.
 inline bool casts_shadows(const RenderSettings& settings) {
@@ -59,7 +76,7 @@ enum class Channel {
 
 enum class PixelFormat {
   kSrgb8,       ///< base::Image8, after exposure
-  kLinearFloat  ///< base::ImageF, outgoing radiance in W·mm⁻²·sr⁻¹: R G B A, then the channels asked for
+  kLinearFloat  ///< base::ImageF, outgoing radiance in W·mm⁻²·sr⁻¹ times alpha: R G B A, then the channels asked for
 };
 
 /// Plain values; the snapshot keeps everything it needs alive.
@@ -86,7 +103,8 @@ struct Frame {
   std::variant<base::Image8, base::ImageF> image;
   uint64_t scene_revision = 0;
   std::vector<StageTime> stages;
-  std::string path;  ///< the code path that made the pixels
+  std::string path;       ///< the code path that made the pixels
+  float exposure_ev = 0;  ///< that the picture was multiplied by, in stops; 0 for linear pixels
 };
 
 struct RendererInfo {

@@ -1,28 +1,16 @@
 #include "render/pixels.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <utility>
 
 #include "render/channels.h"
+#include "render/develop.h"
 
 namespace diaphane::render {
-namespace {
 
-/// IEC 61966-2-1.
-float encode_srgb(float linear) {
-  const float v = std::clamp(linear, 0.0f, 1.0f);
-  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
-}
-
-uint8_t to_byte(float value) { return static_cast<uint8_t>(std::lround(255 * value)); }
-
-}  // namespace
-
-Canvas make_canvas(Frame& frame, const FrameRequest& request) {
+Canvas make_canvas(Frame& frame, const FrameRequest& request, PixelFormat format) {
   const size_t pixels = size_t{request.width_px} * request.height_px;
-  if (request.format == PixelFormat::kSrgb8) {
+  if (format == PixelFormat::kSrgb8) {
     auto& image = frame.image.emplace<base::Image8>(
         base::Image8{request.width_px, request.height_px, std::vector<uint8_t>(4 * pixels)});
     return {image.rgba.data(), request.width_px, request.height_px, 4};

@@ -9,8 +9,8 @@
 
 namespace diaphane::render {
 
-/// Gives `frame` a picture of the request's size and format, all zero.
-Canvas make_canvas(Frame& frame, const FrameRequest& request);
+/// Gives `frame` a picture of the request's size and channels, all zero.
+Canvas make_canvas(Frame& frame, const FrameRequest& request, PixelFormat format);
 
 /// Linear radiance to RGBA32F, or after scaling to RGBA8 with sRGB-encoded colour, as GL does it.
 void store_pixels(std::span<const glm::vec4> radiance, float radiance_scale, PixelFormat format, uint8_t* pixels);

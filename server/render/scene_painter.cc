@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "fmt/format.h"
-#include "render/channels.h"
-#include "render/pixels.h"
+#include "render/develop.h"
 #include "render/projection.h"
 
 namespace diaphane::render {
@@ -119,7 +118,9 @@ absl::Status ScenePainter::draw_tile(Job& job, const Tile& tile, uint8_t* pixels
 absl::StatusOr<Frame> ScenePainter::paint(const FrameRequest& request, const std::atomic<bool>& cancelled) {
   const scene::SceneSnapshot& scene = *request.scene;
   if (scene.meshes.empty()) return absl::FailedPreconditionError(fmt::format("{}: has no mesh to draw", scene.name));
-  Job job{request, cancelled, needs_of(request)};
+  const bool picture = request.format == PixelFormat::kSrgb8;
+  const bool developed = picture && needs_developing(request.settings);
+  Job job{request, cancelled, needs_of(request), developed ? PixelFormat::kLinearFloat : request.format};
   const Technique technique = request.settings.technique;
   job.variant.lit =
       casts_shadows(request.settings) && (technique == Technique::kPaper || technique == Technique::kLambert);
@@ -130,29 +131,20 @@ absl::StatusOr<Frame> ScenePainter::paint(const FrameRequest& request, const std
   const float aspect = static_cast<float>(request.width_px) / static_cast<float>(request.height_px);
   job.view.clip_from_world = clip_from_world(request.camera, scene.millimetres_per_unit, aspect, job.bounds_mm);
   job.view.eye_mm = glm::vec4(request.camera.eye * static_cast<float>(scene.millimetres_per_unit), 1);
-  const bool picture = request.format == PixelFormat::kSrgb8;
-  job.view.radiance_scale = picture ? std::exp2(request.settings.exposure_ev) : 1.0f;
+  job.view.radiance_scale = picture && !developed ? std::exp2(request.settings.exposure_ev) : 1.0f;
 
-  const uint32_t target_width = std::min(request.width_px, kTile_px);
-  const uint32_t target_height = std::min(request.height_px, kTile_px);
-  if (!targets_.has_value() || !targets_->fits(target_width, target_height, request.format)) {
-    targets_.reset();
-    targets_.emplace(target_width, target_height, request.format);
-  }
   Frame frame;
   frame.scene_revision = scene.revision;
-  const Canvas canvas = make_canvas(frame, request);
-  const size_t pixel_bytes = picture ? 4 : 4 * sizeof(float);
-  std::vector<uint8_t> pixels(size_t{target_width} * target_height * pixel_bytes);
-  const absl::Status drawn = for_each_tile(request.width_px, request.height_px, [&](const Tile& tile) {
-    absl::Status status = draw_tile(job, tile, pixels.data());
-    if (!status.ok()) return status;
-    place_tile(canvas, tile, pixels.data(), pixel_bytes);
-    if (!picture) store_channels(request, job.channels, tile, std::get<base::ImageF>(frame.image));
-    job.pixels_done += size_t{tile.width_px} * tile.height_px;
-    return absl::OkStatus();
-  });
-  if (!drawn.ok()) return drawn;
+  if (absl::Status drawn = draw_tiles(job, frame); !drawn.ok()) return drawn;
+  if (request.settings.background) lay_over(*request.settings.background, std::get<base::ImageF>(frame.image));
+  if (picture) frame.exposure_ev = request.settings.exposure_ev;
+  if (developed) {
+    job.clock.run("develop", [&] {
+      const auto& linear = std::get<base::ImageF>(frame.image);
+      if (request.settings.auto_exposure) frame.exposure_ev += find_exposure_ev(linear);
+      frame.image = develop(linear, frame.exposure_ev, request.settings.tone_mapping);
+    });
+  }
   frame.stages = job.clock.take();
   return frame;
 }

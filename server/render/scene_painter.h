@@ -31,7 +31,8 @@ class ScenePainter {
   struct Job {
     const FrameRequest& request;
     const std::atomic<bool>& cancelled;
-    ChannelNeeds needs;
+    ChannelNeeds needs;  ///< of the pass at hand
+    PixelFormat format;  ///< that is drawn
     Variant variant{};
     std::vector<DrawnMesh> meshes{};
     geometry::Bounds bounds_mm{};
@@ -39,7 +40,8 @@ class ScenePainter {
     ViewUniforms view{};
     StageClock clock{};
     ChannelTile channels{};  ///< of the tile at hand
-    size_t pixels_done = 0;  ///< in earlier tiles
+    uint32_t passes = 1;     ///< over every tile
+    size_t pixels_done = 0;  ///< in earlier tiles and passes
   };
 
   static absl::Status check_cancelled(const Job& job);
@@ -64,6 +66,11 @@ class ScenePainter {
   void shade_tile(Job& job, const Tile& tile);
   void read_tile(Job& job, const Tile& tile, uint8_t* pixels);
   absl::Status draw_tile(Job& job, const Tile& tile, uint8_t* pixels);
+
+  // scene_painter_samples.cc
+  void shift_view(Job& job, const glm::vec2& place) const;
+  absl::Status draw_sampled_tile(Job& job, const Tile& tile, uint8_t* pixels);
+  absl::Status draw_tiles(Job& job, Frame& frame);
 
   // scene_painter_reference.cc
   absl::Status draw_reference_tile(Job& job, const Tile& tile, uint8_t* pixels);

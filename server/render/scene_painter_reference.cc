@@ -46,7 +46,7 @@ absl::Status ScenePainter::draw_reference_tile(Job& job, const Tile& tile, uint8
   if (shadowed) shadows_.prepare_rays();
   const auto shown = static_cast<size_t>(std::count_if(channels.position_mm.begin(), channels.position_mm.end(),
                                                        [](const glm::vec4& p) { return p.w != 0; }));
-  const double all_pixels = static_cast<double>(job.request.width_px) * job.request.height_px;
+  const double all_pixels = static_cast<double>(job.request.width_px) * job.request.height_px * job.passes;
   const glm::vec3 eye_mm(job.view.eye_mm);
   std::vector<glm::vec4> radiance(count, glm::vec4(0));
   size_t shown_before = 0;
@@ -80,7 +80,7 @@ absl::Status ScenePainter::draw_reference_tile(Job& job, const Tile& tile, uint8
     }
     shown_before += points.pixels.size();
   }
-  store_pixels(radiance, job.view.radiance_scale, job.request.format, pixels);
+  store_pixels(radiance, job.view.radiance_scale, job.format, pixels);
   return absl::OkStatus();
 }
 

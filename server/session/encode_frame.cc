@@ -38,6 +38,7 @@ absl::StatusOr<EncodedFrame> encode_frame(render::Frame frame, const encode::Enc
   encoded.stages = std::move(frame.stages);
   encoded.stages.push_back({"encode", milliseconds_since(start), true});
   encoded.path = std::move(frame.path);
+  encoded.exposure_ev = frame.exposure_ev;
   return encoded;
 }
 

@@ -27,6 +27,7 @@ struct EncodedFrame {
   uint64_t scene_revision = 0;
   std::vector<render::StageTime> stages;  ///< "queue", the renderer's, "encode"
   std::string path;
+  float exposure_ev = 0;  ///< as render::Frame has it
 };
 
 /// What a frame is asked with.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -64,12 +65,26 @@ struct PaperSettings {
   float global_gain = 1;        ///< multiplies the global term, 0..1000
 };
 
+/// How radiance becomes what a screen can show; never in EXR. Neutral leaves colours up to 0.8 as they are, and
+/// compresses brighter ones.
+enum class ToneMapping { kNone = 1, kNeutral = 2 };
+
+struct NamedToneMapping {
+  std::string_view name;
+  ToneMapping tone_mapping;
+};
+inline constexpr NamedToneMapping kToneMappings[] = {{"none", ToneMapping::kNone}, {"neutral", ToneMapping::kNeutral}};
+
 struct RenderSettings {
   Technique technique = Technique::kServerDefault;
   Quality quality = Quality::kNormal;  ///< of the integral
   Shadows shadows = Shadows::kDefault;
   PaperSettings paper;
-  float exposure_ev = 0;  ///< stops, -32..32; multiplies radiance by 2^exposure_ev before sRGB, never in EXR
+  float exposure_ev = 0;       ///< stops, -32..32; multiplies radiance by 2^exposure_ev before sRGB, never in EXR
+  bool auto_exposure = false;  ///< finds the exposure by the frame, and adds exposure_ev
+  ToneMapping tone_mapping = ToneMapping::kNone;
+  uint32_t samples = 1;           ///< a pixel, 1..64
+  std::optional<Rgb> background;  ///< linear, each 0..1e6, where no surface is; not given: nothing, alpha 0
 };
 
 struct Size {
@@ -80,7 +95,7 @@ struct Size {
 enum class ImageFormat {
   kPng = 1,   ///< 8-bit sRGB with unassociated alpha, lossless
   kJpeg = 2,  ///< 8-bit sRGB over black
-  kExr = 3    ///< linear outgoing radiance, W·mm⁻²·sr⁻¹, 32-bit float RGBA
+  kExr = 3    ///< linear outgoing radiance times alpha, W·mm⁻²·sr⁻¹, 32-bit float RGBA
 };
 
 /// What an EXR tells beside its colour, of the surface that each pixel's centre shows, as 32-bit floats. Where a pixel
@@ -126,7 +141,8 @@ struct RenderedFrame {
   uint64_t scene_revision = 0;
   Size size;
   std::vector<StageTime> stages;
-  std::string path;  ///< the code path that made the pixels; the same path makes the same bytes
+  std::string path;       ///< the code path that made the pixels; the same path makes the same bytes
+  float exposure_ev = 0;  ///< stops that the picture was multiplied by, found ones included
 };
 
 }  // namespace diaphane

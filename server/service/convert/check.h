@@ -6,9 +6,11 @@
 #include <string_view>
 
 #include "absl/status/statusor.h"
+#include "base/status.h"
 #include "diaphane/v1/common.pb.h"
 #include "glm/vec3.hpp"
 #include "google/protobuf/field_mask.pb.h"
+#include "google/protobuf/generated_enum_reflection.h"
 
 namespace diaphane::service {
 
@@ -23,6 +25,15 @@ absl::Status check_length(std::string_view field, std::string_view text, size_t 
 
 /// Of coordinates; see geometry::check_finite.
 inline constexpr double kLargestCoordinate = 1e18;
+
+/// The refusal of a value that the enum has not.
+template <typename Enum>
+absl::Status unknown_value(std::string_view field, Enum value) {
+  const auto* descriptor = google::protobuf::GetEnumDescriptor<Enum>();
+  std::string known = descriptor->value(1)->name();
+  for (int i = 2; i < descriptor->value_count(); ++i) known += ", " + descriptor->value(i)->name();
+  return base::invalid_field(field, known, static_cast<int>(value));
+}
 
 /// A position in scene units, each coordinate finite and within ±1e18.
 absl::StatusOr<glm::vec3> position_from_proto(const v1::Vec3& message, std::string_view field);

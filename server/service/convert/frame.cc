@@ -8,6 +8,7 @@
 #include "fmt/format.h"
 #include "glm/geometric.hpp"
 #include "service/convert/check.h"
+#include "service/convert/picture.h"
 
 namespace diaphane::service {
 namespace {
@@ -17,15 +18,6 @@ constexpr double kSmallestDistance = 1e-12;
 constexpr double kSmallestSine = 3e-4;  // of the angle between view and up: 0.02 degrees
 
 std::string show(const v1::Vec3& v) { return fmt::format("{},{},{}", v.x(), v.y(), v.z()); }
-
-/// The refusal of a value that the enum has not.
-template <typename Enum>
-absl::Status unknown_value(std::string_view field, Enum value) {
-  const auto* descriptor = google::protobuf::GetEnumDescriptor<Enum>();
-  std::string known = descriptor->value(1)->name();
-  for (int i = 2; i < descriptor->value_count(); ++i) known += ", " + descriptor->value(i)->name();
-  return base::invalid_field(field, known, static_cast<int>(value));
-}
 
 absl::StatusOr<render::Technique> from_proto(v1::Technique technique) {
   switch (technique) {
@@ -158,14 +150,12 @@ absl::StatusOr<render::RenderSettings> from_proto(const v1::RenderSettings& mess
   if (!shadows.ok()) return shadows.status();
   const absl::StatusOr<render::PaperSettings> paper = from_proto(message.paper());
   if (!paper.ok()) return paper.status();
-  absl::Status exposure = check_range("settings.exposure_ev", message.exposure_ev(), -32, 32);
-  if (!exposure.ok()) return exposure;
   render::RenderSettings settings;
+  if (absl::Status picture = take_picture_settings(message, settings); !picture.ok()) return picture;
   settings.technique = *technique;
   settings.quality = *quality;
   settings.shadows = *shadows;
   settings.paper = *paper;
-  settings.exposure_ev = message.exposure_ev();
   return settings;
 }
 
@@ -228,7 +218,7 @@ absl::StatusOr<session::FrameTask> from_proto(const v1::RenderFrameRequest& mess
   const absl::StatusOr<render::RenderSettings> settings = from_proto(message.settings());
   if (!settings.ok()) return settings.status();
   if (settings->technique == render::Technique::kReference) {
-    absl::Status size = check_size(message.size(), std::min(max_pixels, kMaxReferencePixels));
+    absl::Status size = check_size(message.size(), std::min(max_pixels, kMaxReferencePixels / settings->samples));
     if (!size.ok()) return size;
   }
   const absl::StatusOr<encode::Encoding> encoding = from_proto(message.encoding());
@@ -247,6 +237,10 @@ absl::StatusOr<session::FrameTask> from_proto(const v1::RenderFrameRequest& mess
   task.request.height_px = message.size().height_px();
   task.request.settings = *settings;
   task.encoding = *encoding;
+  // JPEG has no alpha: edges that share a pixel with nothing are mixed with its black as light, not as codes.
+  if (encoding->format == encode::ImageFormat::kJpeg && settings->samples > 1 && !settings->background) {
+    task.request.settings.background = glm::vec3(0);
+  }
   return task;
 }
 
@@ -263,6 +257,7 @@ void to_proto(session::EncodedFrame frame, v1::RenderFrameResponse& message) {
     time.set_ran(stage.ran);
   }
   message.set_path(std::move(frame.path));
+  message.set_exposure_ev(frame.exposure_ev);
 }
 
 }  // namespace diaphane::service

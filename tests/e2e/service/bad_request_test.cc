@@ -141,6 +141,22 @@ TEST_F(BadRequestTest, RefusesSettings) {
                        {"settings.shadows", "3", "SHADOWS_ON"});
   expect_frame_refused([](auto& r) { r.mutable_settings()->set_exposure_ev(kNan); },
                        {"settings.exposure_ev", "nan", "-32..32"});
+  expect_frame_refused([](auto& r) { r.mutable_settings()->set_samples(65); }, {"settings.samples", "65", "1..64"});
+  expect_frame_refused([](auto& r) { r.mutable_settings()->set_tone_mapping(static_cast<v1::ToneMapping>(7)); },
+                       {"settings.tone_mapping", "7", "TONE_MAPPING_NEUTRAL"});
+  expect_frame_refused([](auto& r) { r.mutable_settings()->mutable_background()->mutable_color()->set_y(-1); },
+                       {"settings.background.color.y", "-1", "0..1000000"});
+}
+
+TEST_F(BadRequestTest, CountsEverySampleOfTheReference) {
+  expect_frame_refused(
+      [](auto& r) {
+        r.mutable_settings()->set_technique(v1::TECHNIQUE_REFERENCE);
+        r.mutable_settings()->set_samples(64);
+        r.mutable_size()->set_width_px(129);
+        r.mutable_size()->set_height_px(128);
+      },
+      {"size", "129x128", "at most 16384 pixels"});
 }
 
 TEST_F(BadRequestTest, RefusesEncodings) {

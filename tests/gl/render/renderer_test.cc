@@ -1,5 +1,5 @@
 // The renderer as the service sees it: frames of scenes, and which stages ran.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
@@ -307,6 +307,94 @@ TEST_F(Renderer, ExposureDoublesPicturesByStopsAndLeavesLinearPixelsAlone) {
   const auto bright = std::get<base::Image8>(render(request).image).rgba;
   request.settings.exposure_ev = 0;
   EXPECT_GT(bright[4 * (32 * 96 + 48)], std::get<base::Image8>(render(request).image).rgba[4 * (32 * 96 + 48)]);
+}
+
+TEST_F(Renderer, SamplesCoverAnEdgeByTheirShare) {
+  auto scene = make_scene(make_plane(10, 4), "marble");
+  add_point_light(*scene, {0, 0, 50}, 1e5f);
+  FrameRequest request = request_of(scene);
+  request.format = PixelFormat::kLinearFloat;
+  request.camera = {{0, 0, 100}, {0, 0, 0}, {0, 1, 0}, 30};
+  request.width_px = request.height_px = 33;
+  const auto alphas = [&](uint32_t samples) {
+    request.settings.samples = samples;
+    const auto values = std::get<base::ImageF>(render(request).image).values;
+    double covered = 0;
+    for (size_t i = 3; i < values.size(); i += 4) covered += values[i];
+    return covered;
+  };
+  const double pixel = 2 * 100 * std::tan(15 * std::numbers::pi / 180) / 33;
+  const double exact = 100 / (pixel * pixel);
+  EXPECT_NEAR(alphas(64), exact, 0.01 * exact);
+  EXPECT_GT(std::abs(alphas(1) - exact), 0.01 * exact);
+}
+
+TEST_F(Renderer, SamplesLeaveWhatLiesWithinThePictureAsItIs) {
+  FrameRequest request = request_of(marble_box());
+  request.format = PixelFormat::kLinearFloat;
+  for (const Technique technique : {Technique::kIntegral, Technique::kPaper, Technique::kLambert}) {
+    request.settings.technique = technique;
+    request.settings.samples = 1;
+    const auto one = std::get<base::ImageF>(render(request).image).values;
+    request.settings.samples = 4;
+    const auto four = std::get<base::ImageF>(render(request).image).values;
+    const size_t centre = 4 * (32 * 96 + 48);
+    EXPECT_NEAR(four[centre], one[centre], 0.02f * one[centre]);
+    EXPECT_EQ(four[centre + 3], 1);
+    EXPECT_EQ(four[3], 0);
+  }
+}
+
+TEST_F(Renderer, SamplesLeaveExtraChannelsAtThePixelsCentre) {
+  FrameRequest request = request_of(marble_box());
+  request.format = PixelFormat::kLinearFloat;
+  request.channels = {Channel::kDepth, Channel::kRadiosity};
+  const auto one = std::get<base::ImageF>(render(request).image).values;
+  request.settings.samples = 3;
+  const auto three = std::get<base::ImageF>(render(request).image).values;
+  ASSERT_EQ(one.size(), three.size());
+  for (size_t i = 0; i < one.size(); ++i) {
+    if (i % 8 >= 4) ASSERT_EQ(one[i], three[i]) << i;
+  }
+}
+
+TEST_F(Renderer, DevelopsAsTheDriverStores) {
+  FrameRequest request = request_of(marble_box());
+  request.settings.exposure_ev = 1;
+  const auto stored = std::get<base::Image8>(render(request).image).rgba;
+  request.settings.background = glm::vec3(0);
+  const auto developed = std::get<base::Image8>(render(request).image).rgba;
+  for (size_t i = 0; i < stored.size(); ++i) {
+    if (i % 4 != 3) ASSERT_NEAR(stored[i], developed[i], 1) << i;
+  }
+}
+
+TEST_F(Renderer, ShowsTheBackgroundWhereNoSurfaceIsInLinearPixelsToo) {
+  FrameRequest request = request_of(marble_box());
+  request.settings.background = glm::vec3(0.25f, 0.5f, 2);
+  const auto picture = std::get<base::Image8>(render(request).image).rgba;
+  EXPECT_THAT(std::vector<int>(picture.begin(), picture.begin() + 4), testing::ElementsAre(137, 188, 255, 255));
+  request.format = PixelFormat::kLinearFloat;
+  const auto linear = std::get<base::ImageF>(render(request).image).values;
+  EXPECT_THAT(std::vector<float>(linear.begin(), linear.begin() + 4), testing::ElementsAre(0.25f, 0.5f, 2, 1));
+}
+
+TEST_F(Renderer, FindsAnExposureThatHoldsForAnyStrengthOfLight) {
+  auto dim = make_scene(make_box({10, 10, 10}, 4), "marble");
+  add_point_light(*dim, {30, 40, 50}, 1e2f);
+  auto bright = make_scene(make_box({10, 10, 10}, 4), "marble");
+  add_point_light(*bright, {30, 40, 50}, 1e5f);
+  FrameRequest request = request_of(dim);
+  request.settings.auto_exposure = true;
+  const Frame of_dim = render(request);
+  request.scene = bright;
+  const Frame of_bright = render(request);
+  EXPECT_NEAR(of_dim.exposure_ev - of_bright.exposure_ev, std::log2(1000), 1e-3);
+  const auto& a = std::get<base::Image8>(of_dim.image).rgba;
+  const auto& b = std::get<base::Image8>(of_bright.image).rgba;
+  for (size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 1);
+  request.format = PixelFormat::kLinearFloat;
+  EXPECT_EQ(render(request).exposure_ev, 0);
 }
 
 TEST_F(Renderer, TilesMeetWithoutASeam) {

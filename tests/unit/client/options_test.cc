@@ -41,6 +41,19 @@ TEST(Numbers, AreExactlyAsManyAsAsked) {
   }
 }
 
+TEST(Exposures, AreStopsOrFoundOrBoth) {
+  const auto is = [](const char* text, bool found, float ev) {
+    const std::optional<Exposure> exposure = parse_exposure(text);
+    return exposure && exposure->found == found && exposure->ev == ev;
+  };
+  EXPECT_TRUE(is("-1.5", false, -1.5f));
+  EXPECT_TRUE(is("auto", true, 0));
+  EXPECT_TRUE(is("auto+1", true, 1));
+  EXPECT_TRUE(is("auto-0.5", true, -0.5f));
+  for (const char* text : {"", "a", "auto1", "auto+", "automatic", "1,2", "nan"})
+    EXPECT_FALSE(parse_exposure(text)) << text;
+}
+
 TEST(Sizes, AreTwoPositiveIntegers) {
   const std::optional<Size> size = parse_size("640x480");
   ASSERT_TRUE(size);

@@ -5,8 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+
+#include "encode/srgb_profile.h"
 
 namespace diaphane::encode {
 namespace {
@@ -63,6 +67,40 @@ TEST(EncodeJpeg, LaysColoursOverBlack) {
   const Decoded decoded = decode(*encode_jpeg(image, 95), "a.jpg");
   ASSERT_EQ(decoded.spec.nchannels, 3);
   EXPECT_NEAR(decoded.values[0] * 255, 200 * 128 / 255.0, 1.5);
+}
+
+TEST(EncodeJpeg, CarriesTheProfileOfSrgb) {
+  const Decoded decoded = decode(*encode_jpeg(half_transparent(16, 16), 90), "a.jpg");
+  const OIIO::ParamValue* found = decoded.spec.find_attribute("ICCProfile");
+  ASSERT_NE(found, nullptr);
+  const std::vector<uint8_t>& profile = srgb_profile();
+  ASSERT_EQ(static_cast<size_t>(found->datasize()), profile.size());
+  EXPECT_TRUE(std::equal(profile.begin(), profile.end(), static_cast<const uint8_t*>(found->data())));
+}
+
+TEST(EncodePng, SaysSrgb) { EXPECT_THAT(*encode_png(half_transparent(4, 4)), HasSubstr("sRGB")); }
+
+TEST(SrgbProfile, HasTagsWithinItAndPrimariesThatAddUpToItsWhite) {
+  const std::vector<uint8_t>& profile = srgb_profile();
+  const auto u32 = [&](size_t at) {
+    uint32_t value = 0;
+    for (size_t i = 0; i < 4; ++i) value = value << 8 | profile.at(at + i);
+    return value;
+  };
+  ASSERT_EQ(u32(0), profile.size());
+  double sum[3] = {};
+  std::map<std::string, uint32_t> tags;
+  for (uint32_t i = 0; i < u32(128); ++i) {
+    const size_t entry = 132 + 12 * size_t{i};
+    tags[std::string(profile.begin() + static_cast<ptrdiff_t>(entry),
+                     profile.begin() + static_cast<ptrdiff_t>(entry) + 4)] = u32(entry + 4);
+    EXPECT_EQ(u32(entry + 4) % 4, 0u);
+    EXPECT_LE(u32(entry + 4) + u32(entry + 8), profile.size());
+  }
+  for (const char* primary : {"rXYZ", "gXYZ", "bXYZ"}) {
+    for (size_t axis = 0; axis < 3; ++axis) sum[axis] += u32(tags.at(primary) + 8 + 4 * axis) / 65536.0;
+  }
+  for (size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(sum[axis], u32(tags.at("wtpt") + 8 + 4 * axis) / 65536.0, 2e-4);
 }
 
 TEST(EncodeJpeg, IsSmallerAtALowerQuality) {

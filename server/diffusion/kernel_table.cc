@@ -101,12 +101,22 @@ double carried_share(double deviation, double spacing) {
   return t * t * (3 - 2 * t);
 }
 
+GaussianSum log_spaced(double narrowest_mm, size_t count, double ratio) {
+  GaussianSum sum{std::vector<double>(count), std::vector<double>(count, 0.0)};
+  for (size_t k = 0; k < count; ++k) sum.deviation_mm[k] = narrowest_mm * std::pow(ratio, static_cast<double>(k));
+  return sum;
+}
+
+/// Near enough to each other that the trapezoid rule holds where e^(−ar)/r is next to nothing too.
+constexpr size_t kMixtureTerms = 22;
+constexpr double kMixtureRatio = 1.3;
+
 /// e^(−ar)/r = (2/√π) ∫ e^(−r²x² − a²/4x²) dx with x = 1/√2σ, by the trapezoid rule in ln σ.
 void add_mixture(const optics::ProfileTerm& term, GaussianSum& sum) {
   for (size_t k = 0; k < sum.weight.size(); ++k) {
     const double x = 1 / (std::sqrt(2.0) * sum.deviation_mm[k]);
     const double depth = term.transport_mm / (2 * x);
-    sum.weight[k] += term.fluence_mm * 2 / std::sqrt(pi) * x * std::exp(-depth * depth) * 0.5 * std::log(3.0);
+    sum.weight[k] += term.fluence_mm * 2 / std::sqrt(pi) * x * std::exp(-depth * depth) * std::log(kMixtureRatio);
   }
 }
 
@@ -139,15 +149,15 @@ glm::vec3 smooth_distance_mm(const optics::ReflectanceProfile& profile) {
 }
 
 GaussianSum fit_gaussians(const optics::ChannelProfile& profile) {
-  constexpr int kTerms = GaussianSum::kTerms;
+  constexpr int kTerms = 12;
   const double z = profile.smooth_mm;
-  GaussianSum sum;
-  for (int k = 0; k < kTerms; ++k) sum.deviation_mm[k] = 0.4 * z * std::pow(std::sqrt(3.0), k);
   if (is_singular(profile)) {
-    for (const optics::ProfileTerm& term : profile.terms) add_mixture(term, sum);
-    return sum;
+    GaussianSum mixture = log_spaced(0.4 * z, kMixtureTerms, kMixtureRatio);
+    for (const optics::ProfileTerm& term : profile.terms) add_mixture(term, mixture);
+    return mixture;
   }
 
+  GaussianSum sum = log_spaced(0.4 * z, kTerms, std::sqrt(3.0));
   const double zr = profile.terms[0].height_mm;
 
   // Normal equations of the weighted least squares.
@@ -224,12 +234,13 @@ void KernelSet::build(uint32_t step) {
   }
   if (!built_[step]) built_[step] = std::make_unique<KernelTable>();
   for (int c = 0; c < 3; ++c) {
-    std::array<double, GaussianSum::kTerms> rate{}, left_out{};
+    const GaussianSum& gaussians = gaussians_[c];
+    std::vector<double> rate(gaussians.weight.size()), left_out(gaussians.weight.size());
     double response = 0;
     for (size_t k = 0; k < left_out.size(); ++k) {
-      const double variance = gaussians_[c].deviation_mm[k] * gaussians_[c].deviation_mm[k];
+      const double variance = gaussians.deviation_mm[k] * gaussians.deviation_mm[k];
       rate[k] = 0.5 / variance;
-      left_out[k] = gaussians_[c].weight[k] * (1 - carried_share(gaussians_[c].deviation_mm[k], spacing));
+      left_out[k] = gaussians.weight[k] * (1 - carried_share(gaussians.deviation_mm[k], spacing));
       response += left_out[k] * 2 * pi * variance;
     }
     local_response_[step][c] += static_cast<float>(response);

@@ -20,17 +20,16 @@ struct KernelValue {
 /// z of each channel, mm: the distance on which its kernel is smooth.
 glm::vec3 smooth_distance_mm(const optics::ReflectanceProfile& profile);
 
-/// Σ w_k e^(−r²/2σ_k²), σ_k = 0.4 z √3^k: Rd of one channel, with which its narrow part can be taken out.
+/// Σ w_k e^(−r²/2σ_k²), σ_k rising from 0.4 z: Rd of one channel, with which its narrow part can be taken out.
 struct GaussianSum {
-  static constexpr int kTerms = 12;
-  std::array<double, kTerms> deviation_mm{};
-  std::array<double, kTerms> weight{};  ///< ≥ 0
+  std::vector<double> deviation_mm;
+  std::vector<double> weight;  ///< ≥ 0
 
   KernelValue at(double distance2_mm2) const;
   double total() const;  ///< over the plane
 };
 /// A fit to a dipole's Rd. For normalized diffusion, whose e^(−ar)/r is a mixture of Gaussians of every width, the part
-/// of it from σ_0 up, exactly (to 4e-4 of the mixture).
+/// of that mixture from σ_0 up.
 GaussianSum fit_gaussians(const optics::ChannelProfile& profile);
 
 /// What of Rd vertices can carry at all: all of a dipole's. Normalized diffusion is infinite at r = 0; there it is

@@ -9,7 +9,7 @@ namespace {
 using std::numbers::pi;
 
 /// What of l/s stands for z in normalized diffusion.
-constexpr double kSmoothShareOfLength = 0.5;
+constexpr double kSmoothShareOfLength = 1.0;
 
 /// One channel's coefficients, as the formulae want them.
 struct Medium {

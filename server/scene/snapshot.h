@@ -19,7 +19,7 @@ struct Material {
   std::string name;  ///< scenes/{scene}/materials/{material}
   optics::MaterialForm form;
   optics::Coefficients coefficients;  ///< what the form comes to, with the profile that was asked for
-  std::vector<std::string> warnings;  ///< what is doubtful about them, a sentence each
+  std::vector<std::string> warnings{};  ///< what is doubtful about them, a sentence each
 };
 
 /// Shines in all directions; irradiance falls with the square of the distance in millimetres.

@@ -29,6 +29,21 @@ absl::Status check_above_zero(std::string_view field, const v1::Vec3& value, dou
   return absl::OkStatus();
 }
 
+/// As check_range(), with bounds that are floats as the fields are: in double, 0.999f is beyond 0.999.
+absl::Status check_within(std::string_view field, float value, float lowest, float highest) {
+  if (value >= lowest && value <= highest) return absl::OkStatus();
+  return base::invalid_field(field, fmt::format("{}..{}", lowest, highest), value);
+}
+
+absl::Status check_within(std::string_view field, const v1::Vec3& value, float lowest, float highest) {
+  const glm::vec3 v = service::from_proto(value);
+  for (int axis = 0; axis < 3; ++axis) {
+    absl::Status within = check_within(fmt::format("{}.{}", field, "xyz"[axis]), v[axis], lowest, highest);
+    if (!within.ok()) return within;
+  }
+  return absl::OkStatus();
+}
+
 /// `value`, or what is there already where it is 0.
 absl::Status set_refractive_index(const char* field, float value, float* refractive_index) {
   if (value == 0) return absl::OkStatus();
@@ -60,8 +75,8 @@ absl::StatusOr<optics::MaterialForm> form_from_proto(const v1::DiffuseColor& mes
   optics::DiffuseColor form{.color = service::from_proto(message.color()),
                             .mean_free_path_mm = service::from_proto(message.mean_free_path_mm())};
   return all_ok(
-      form, {check_range("material.diffuse_color.color", message.color(), 0, kBrightest),
-             check_range("material.diffuse_color.mean_free_path_mm", message.mean_free_path_mm(), 0.001f, 1000),
+      form, {check_within("material.diffuse_color.color", message.color(), 0, kBrightest),
+             check_within("material.diffuse_color.mean_free_path_mm", message.mean_free_path_mm(), 0.001f, 1000),
              set_refractive_index("material.diffuse_color.refractive_index", message.refractive_index(),
                                   &form.refractive_index)});
 }
@@ -87,10 +102,10 @@ absl::StatusOr<optics::MaterialForm> form_from_proto(const v1::Volume& message) 
       form,
       {check_above_zero("material.volume.attenuation_color", message.attenuation_color(), 1),
        check_attenuates(message.attenuation_color()),
-       check_range("material.volume.attenuation_distance_mm", message.attenuation_distance_mm(), 1e-6f, 1e6),
-       check_range("material.volume.multiscatter_color", message.multiscatter_color(), 0, kBrightest),
+       check_within("material.volume.attenuation_distance_mm", message.attenuation_distance_mm(), 1e-6f, 1e6f),
+       check_within("material.volume.multiscatter_color", message.multiscatter_color(), 0, kBrightest),
        check_scatters(message.multiscatter_color()),
-       check_range("material.volume.scatter_anisotropy", message.scatter_anisotropy(), -0.99f, 0.99f),
+       check_within("material.volume.scatter_anisotropy", message.scatter_anisotropy(), -0.99f, 0.99f),
        set_refractive_index("material.volume.refractive_index", message.refractive_index(), &form.refractive_index)});
 }
 

@@ -32,7 +32,7 @@ absl::Status check_above_zero(std::string_view field, const v1::Vec3& value, dou
 /// As check_range(), with bounds that are floats as the fields are: in double, 0.999f is beyond 0.999.
 absl::Status check_within(std::string_view field, float value, float lowest, float highest) {
   if (value >= lowest && value <= highest) return absl::OkStatus();
-  return base::invalid_field(field, fmt::format("{}..{}", lowest, highest), value);
+  return base::invalid_field(field, fmt::format("{}..{}", lowest, highest), fmt::format("{}", value));
 }
 
 absl::Status check_within(std::string_view field, const v1::Vec3& value, float lowest, float highest) {

@@ -35,7 +35,10 @@ struct RenderArguments {
   std::optional<std::string> preset;
   std::optional<Rgb> absorption_mm;
   std::optional<Rgb> reduced_scattering_mm;
+  std::optional<Rgb> diffuse_color;
+  std::optional<Rgb> mean_free_path_mm;
   std::optional<float> refractive_index;
+  std::optional<Profile> profile;
 
   std::optional<double> millimetres_per_unit;
   std::optional<double> height_mm;

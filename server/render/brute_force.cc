@@ -31,17 +31,21 @@ diffusion::IrradianceAt irradiance_on(const BruteForceBody& body) {
 
 absl::StatusOr<std::vector<glm::vec3>> brute_force_radiosity(const BruteForceBody& body,
                                                              std::span<const glm::vec3> positions_mm,
+                                                             std::span<const glm::vec3> normals,
                                                              const std::atomic<bool>& cancelled,
                                                              std::function<void(double)> progress) {
-  const optics::Dipole dipole = optics::make_dipole(body.material);
-  const glm::vec3& l = dipole.mean_free_path_mm;
-  const diffusion::SurfelOptions sampling{.splits = 1, .spacing_mm = 0.5f * std::min({l.x, l.y, l.z})};
+  const diffusion::ReferenceKernel kernel = diffusion::reference_kernel(optics::make_profile(body.material));
+  const diffusion::SurfelOptions sampling{.splits = 1, .spacing_mm = kernel.spacing_mm};
   const diffusion::Surfels surfels = diffusion::sample_surface(body.topology.triangles, body.shape.positions_mm,
                                                                body.shape.normals, irradiance_on(body), sampling);
   diffusion::ReferenceOptions options;
   options.cancelled = &cancelled;
   options.progress = std::move(progress);
-  return diffusion::reference_radiosity(dipole, surfels, positions_mm, options);
+  auto radiosity = diffusion::reference_radiosity(kernel.spread, surfels, positions_mm, options);
+  if (!radiosity.ok() || kernel.local == glm::vec3(0)) return radiosity;
+  const std::vector<glm::vec3> irradiance = brute_force_irradiance(body, positions_mm, normals);
+  for (size_t i = 0; i < irradiance.size(); ++i) (*radiosity)[i] += kernel.local * irradiance[i];
+  return radiosity;
 }
 
 std::vector<glm::vec3> brute_force_irradiance(const BruteForceBody& body, std::span<const glm::vec3> positions_mm,

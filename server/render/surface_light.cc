@@ -16,7 +16,7 @@ void SurfaceLight::update(const Inputs& inputs, StageClock& clock) {
   const uint64_t placed = inputs.mesh.generation();
   const geometry::PlacedShape& shape = inputs.mesh.shape();
   const float refractive_index = inputs.material.refractive_index;
-  const Materials material{inputs.material.absorption_mm, inputs.material.reduced_scattering_mm, refractive_index};
+  const optics::Coefficients& material = inputs.material;
   const auto stage = [&](std::string_view name, bool stale, auto&& work) {
     if (stale) {
       clock.run(name, work);

@@ -42,8 +42,6 @@ class SurfaceLight {
   uint64_t generation() const { return generation_; }
 
  private:
-  using Materials = std::tuple<glm::vec3, glm::vec3, float>;
-
   std::unique_ptr<diffusion::DipoleIntegral> integral_;
   IrradianceStage irradiance_;
   std::vector<glm::vec3> radiosity_;
@@ -55,8 +53,8 @@ class SurfaceLight {
   // shape, lights, what is around, η, shadows
   Memo<std::tuple<uint64_t, std::vector<LightStorage>, Ambient, float, uint64_t>> light_reads_;
   Memo<std::tuple<uint64_t, uint64_t>> flux_reads_;  // shape, irradiance
-  Memo<Materials> material_reads_;
-  Memo<std::tuple<uint64_t, uint64_t, Materials, diffusion::Quality>>
+  Memo<optics::Coefficients> material_reads_;
+  Memo<std::tuple<uint64_t, uint64_t, optics::Coefficients, diffusion::Quality>>
       gather_reads_;  // shape, irradiance, material, quality
 };
 

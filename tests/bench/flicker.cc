@@ -63,7 +63,7 @@ Frame measure(const testing::Cell& cell, const testing::Mesh& pose, const testin
               const std::vector<glm::vec3>& picture, const std::vector<size_t>& pixels) {
   Frame frame;
   std::vector<size_t> slots;
-  std::vector<glm::vec3> points_mm;
+  std::vector<glm::vec3> points_mm, normals;
   frame.integral.resize(pixels.size());
   frame.reference.resize(pixels.size());
   for (size_t k = 0; k < pixels.size(); ++k) {
@@ -71,9 +71,10 @@ Frame measure(const testing::Cell& cell, const testing::Mesh& pose, const testin
     if (!frame.inside.back()) continue;
     slots.push_back(k);
     points_mm.push_back(sights.of_pixel[pixels[k]]->position_mm);
+    normals.push_back(sights.of_pixel[pixels[k]]->normal);
     frame.integral[k] = picture[pixels[k]];
   }
-  const std::vector<glm::vec3> truth = testing::true_radiosity(pose, cell.material, cell.irradiance, points_mm);
+  const std::vector<glm::vec3> truth = testing::true_radiosity(pose, cell.material, cell.irradiance, points_mm, normals);
   for (size_t i = 0; i < slots.size(); ++i) {
     const float cosine = sights.of_pixel[pixels[slots[i]]]->cosine;
     frame.reference[slots[i]] =

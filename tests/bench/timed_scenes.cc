@@ -24,7 +24,7 @@ std::shared_ptr<scene::SceneSnapshot> make_scene(const testing::Mesh& mesh, cons
                                                  std::vector<scene::Light> lights) {
   auto scene = std::make_shared<scene::SceneSnapshot>();
   scene->name = "scenes/bench";
-  scene->materials.push_back({"material", preset, optics::find_preset(preset)->coefficients});
+  scene->materials.push_back({"material", optics::PresetName{preset}, optics::find_preset(preset)->coefficients});
   auto body = std::make_shared<scene::Mesh>();
   body->name = "mesh";
   body->material = "material";

@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "glm/common.hpp"
@@ -17,6 +18,7 @@ namespace {
 constexpr float kOffset = 1e-5f;
 /// Surfaces in a row by which a ray may enter (parts of the body in each other) before it counts as lost.
 constexpr int kMostEntered = 8;
+constexpr int kTries = 3;
 
 }  // namespace
 
@@ -83,9 +85,19 @@ void ThicknessField::update(std::span<const glm::uvec3> triangles, const geometr
 }
 
 OppositePoint ThicknessField::find(const glm::vec3& point_mm, const glm::vec3& normal) const {
+  const glm::vec3 across = std::abs(normal.x) < 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+  const glm::vec3 beside = 7 * embree_->offset_mm * glm::cross(normal, across);
+  OppositePoint found;
+  for (int i = 0; i < kTries && found.thickness_mm == std::numeric_limits<float>::infinity(); ++i) {
+    found = trace(point_mm + static_cast<float>(i) * beside, normal);
+  }
+  return found;
+}
+
+OppositePoint ThicknessField::trace(const glm::vec3& start_mm, const glm::vec3& normal) const {
   const Embree& e = *embree_;
   RTCRayHit ray{};
-  ray.ray.org_x = point_mm.x, ray.ray.org_y = point_mm.y, ray.ray.org_z = point_mm.z;
+  ray.ray.org_x = start_mm.x, ray.ray.org_y = start_mm.y, ray.ray.org_z = start_mm.z;
   ray.ray.dir_x = -normal.x, ray.ray.dir_y = -normal.y, ray.ray.dir_z = -normal.z;
   ray.ray.mask = ~0u;
   ray.ray.tnear = e.offset_mm;

@@ -31,6 +31,7 @@ class ThicknessField {
   /// Takes the mesh as it is now; `triangles` must stay until the next call.
   void update(std::span<const glm::uvec3> triangles, const geometry::PlacedShape& shape);
 
+  /// A ray that slips through between triangles is tried again from beside the point.
   OppositePoint find(const glm::vec3& point_mm, const glm::vec3& normal) const;
   /// find() at many points, over all cores.
   std::vector<OppositePoint> find(std::span<const glm::vec3> points_mm, std::span<const glm::vec3> normals) const;
@@ -39,6 +40,7 @@ class ThicknessField {
 
  private:
   struct Embree;
+  OppositePoint trace(const glm::vec3& start_mm, const glm::vec3& normal) const;
   std::unique_ptr<Embree> embree_;
 };
 

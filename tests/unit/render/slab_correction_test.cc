@@ -77,7 +77,9 @@ TEST(SlabCorrection, GivesOnAMeshWhatARandomWalkDoesFromHalfAMeanFreePathUp) {
         const double right = walked.reflected + walked.transmitted;
         EXPECT_NEAR((slab.corrected.reflected[c] + slab.corrected.transmitted[c]) / right, 1, 0.05)
             << "profile " << static_cast<int>(profile) << " thickness " << thickness << " channel " << c;
-        EXPECT_GT(slab.integral.reflected[c] + slab.integral.transmitted[c], 1.2 * right) << thickness;
+        if (thickness <= 1) {
+          EXPECT_GT(slab.integral.reflected[c] + slab.integral.transmitted[c], 1.8 * right) << thickness;
+        }
       }
     }
   }

@@ -137,6 +137,8 @@ void add_technique_options(CLI::App& command, RenderArguments& arguments) {
   add_parsed(command, "--shadows", shadows_names(),
              "Whether meshes hide lights (default: on for integral and reference, else off)", parse_shadows,
              arguments.shadows);
+  command.add_flag("--slab-correction", arguments.slab_correction,
+                   "Of the integral and the reference: thin parts give back what a slab would");
   add_parsed(command, "--terms", terms_names(), "Which part of the paper technique's answer", parse_terms,
              arguments.terms);
   add_parsed(command, "--kernel", "N", "Taps a side of the paper technique's kernel, 3 to 6", parse_count,

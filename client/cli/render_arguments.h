@@ -23,6 +23,7 @@ struct RenderArguments {
   std::optional<Technique> technique;
   std::optional<Quality> quality;
   std::optional<Shadows> shadows;
+  bool slab_correction = false;
   std::optional<Terms> terms;
   std::optional<uint32_t> kernel_taps;
   std::optional<uint32_t> face_size_px;

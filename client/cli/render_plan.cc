@@ -101,6 +101,7 @@ void take_settings(const RenderArguments& arguments, RenderOptions* options) {
   if (arguments.technique) settings.technique = *arguments.technique;
   if (arguments.quality) settings.quality = *arguments.quality;
   if (arguments.shadows) settings.shadows = *arguments.shadows;
+  if (arguments.slab_correction) settings.slab_correction = true;
   if (arguments.terms) settings.paper.terms = *arguments.terms;
   if (arguments.kernel_taps) settings.paper.kernel_taps = *arguments.kernel_taps;
   if (arguments.face_size_px) settings.paper.face_size_px = *arguments.face_size_px;

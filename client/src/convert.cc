@@ -100,6 +100,7 @@ v1::RenderSettings to_proto(const RenderSettings& settings) {
   message.set_exposure_ev(settings.exposure_ev);
   message.set_quality(static_cast<v1::Quality>(settings.quality));
   message.set_shadows(static_cast<v1::Shadows>(settings.shadows));
+  message.set_slab_correction(settings.slab_correction);
   message.set_auto_exposure(settings.auto_exposure);
   message.set_tone_mapping(static_cast<v1::ToneMapping>(settings.tone_mapping));
   message.set_samples(settings.samples);
@@ -165,6 +166,7 @@ MeshInfo from_proto(const v1::Mesh& message) {
 RenderSettings from_proto(const v1::RenderSettings& message) {
   RenderSettings settings{.technique = static_cast<Technique>(message.technique()),
                           .shadows = static_cast<Shadows>(message.shadows()),
+                          .slab_correction = message.slab_correction(),
                           .exposure_ev = message.exposure_ev(),
                           .auto_exposure = message.auto_exposure()};
   if (message.tone_mapping() != v1::TONE_MAPPING_UNSPECIFIED) {

@@ -23,6 +23,7 @@ struct BruteForceBody {
   std::span<const LightStorage> lights;
   const Ambient& ambient;
   const ShadowScene* shadows;  ///< null: unshadowed
+  bool slab_correction = false;
 };
 
 /// B, linear RGB, W·mm⁻², at each of `positions_mm` with `normals`: the sum over surfels at most half a mean free path

@@ -109,9 +109,10 @@ void ScenePainter::update_atlas(const DrawnMesh& drawn, Job& job) {
 void ScenePainter::update_integral(const DrawnMesh& drawn, bool shadowed, Job& job) {
   MeshState& state = *drawn.state;
   RefinedMesh& refined = state.refined;
-  state.light.update({refined, job.lights, job.ambient, drawn.material, job.request.settings.quality,
-                      shadowed ? &shadows_ : nullptr, shadowed ? shadows_generation_ : 0},
-                     job.clock);
+  state.light.update(
+      {refined, job.lights, job.ambient, drawn.material, job.request.settings.quality, shadowed ? &shadows_ : nullptr,
+       shadowed ? shadows_generation_ : 0, job.request.settings.slab_correction},
+      job.clock);
   state.gpu.update(refined.topology(), refined.shape(), refined.generation(), job.clock);
   state.gpu.update_radiosity(state.light.radiosity(), state.light.generation(), job.clock);
   if (!job.needs.irradiance) return;

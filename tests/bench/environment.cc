@@ -11,6 +11,7 @@
 #include "glm/geometric.hpp"
 #include "optics/presets.h"
 #include "tests/support/cells.h"
+#include "tests/support/error_parts.h"
 
 namespace diaphane {
 namespace {

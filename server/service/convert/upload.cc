@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstring>
+#include <utility>
 
 #include "base/status.h"
 #include "fmt/format.h"
@@ -42,6 +43,10 @@ std::vector<T> take(std::span<const char>& bytes, size_t count) {
 
 absl::StatusOr<PayloadSpec> from_proto(const v1::MeshHeader& message) {
   if (message.triangle_count() == 0) return base::invalid_field("triangle_count", "at least 1", 0);
+  for (const auto& [field, given] : {std::pair("has_texture_coordinates", message.has_texture_coordinates()),
+                                     std::pair("has_colors", message.has_colors())}) {
+    if (given) return base::field_error(absl::StatusCode::kUnimplemented, {field, "true", "false"});
+  }
   return make_spec({message.vertex_count(), message.triangle_count(), message.has_normals()}, message.total_bytes(),
                    message.sha256());
 }

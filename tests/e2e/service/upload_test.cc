@@ -55,6 +55,17 @@ class UploadTest : public ServiceTest {
   std::string material_;
 };
 
+TEST_F(UploadTest, RefusesWhatNoMeshKeeps) {
+  const TestMesh mesh;
+  v1::MeshHeader header = mesh.header(scene_, material_);
+  header.set_has_colors(true);
+  v1::MeshResponse response;
+  const grpc::Status status = upload(header, mesh.payload(), &response);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::UNIMPLEMENTED);
+  EXPECT_EQ(error_info(status).metadata().at("field"), "has_colors");
+  EXPECT_EQ(get_scene(scene_).mesh_count(), 0u);
+}
+
 TEST_F(UploadTest, MakesAMeshOfAWholePayload) {
   const TestMesh mesh;
   v1::MeshHeader header = mesh.header(scene_, material_);

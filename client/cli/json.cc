@@ -92,7 +92,11 @@ Json to_json(const SceneDescription& description) {
   for (const MaterialInfo& info : description.materials) {
     Json material{{"name", info.handle.name}};
     if (const auto* preset = std::get_if<std::string>(&info.material.model)) material["preset"] = *preset;
+    for (const NamedProfile& named : kProfiles) {
+      if (named.profile == info.material.profile) material["profile"] = named.name;
+    }
     material["coefficients"] = to_json(info.resolved);
+    material["warnings"] = info.warnings;
     json["materials"].push_back(std::move(material));
   }
   json["lights"] = Json::array();

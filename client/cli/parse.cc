@@ -124,6 +124,8 @@ std::string technique_names() { return joined(std::span<const NamedTechnique>(kT
 
 std::string quality_names() { return joined(std::span<const NamedQuality>(kQualities)); }
 
+std::string profile_names() { return joined(std::span<const NamedProfile>(kProfiles)); }
+
 std::string shadows_names() { return joined(std::span<const NamedShadows>(kShadows)); }
 
 std::string channel_names() { return joined(std::span<const NamedChannel>(kChannels), ","); }

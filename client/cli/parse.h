@@ -40,6 +40,7 @@ std::optional<ImageFormat> format_of(const std::filesystem::path& path);
 /// The names, with " | " between them; of channels, with commas.
 std::string technique_names();
 std::string quality_names();
+std::string profile_names();
 std::string shadows_names();
 std::string terms_names();
 std::string channel_names();

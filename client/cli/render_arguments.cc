@@ -38,6 +38,11 @@ std::optional<double> parse_above_zero(std::string_view text) {
   return *number;
 }
 
+std::optional<Rgb> parse_rgb_or_grey(std::string_view text) {
+  if (const std::optional<float> grey = parse_number(text)) return Rgb{*grey, *grey, *grey};
+  return parse_rgb(text);
+}
+
 // 0 means "not given" in the contract, and would be taken for the default.
 std::optional<float> parse_index(std::string_view text) {
   const std::optional<float> number = parse_number(text);
@@ -72,6 +77,13 @@ std::optional<Shadows> parse_shadows(std::string_view text) {
   return std::nullopt;
 }
 
+std::optional<Profile> parse_profile(std::string_view text) {
+  for (const NamedProfile& entry : kProfiles) {
+    if (entry.name == text) return entry.profile;
+  }
+  return std::nullopt;
+}
+
 std::optional<Terms> parse_terms(std::string_view text) {
   for (const NamedTerms& entry : kTerms) {
     if (entry.name == text) return entry.terms;
@@ -93,9 +105,19 @@ void add_material_options(CLI::App& command, RenderArguments& arguments) {
       add_parsed(command, "--absorption", "R,G,B", "Absorption in mm^-1", parse_rgb, arguments.absorption_mm);
   auto* scattering = add_parsed(command, "--scattering", "R,G,B", "Reduced scattering in mm^-1", parse_rgb,
                                 arguments.reduced_scattering_mm);
+  auto* color = add_parsed(command, "--diffuse-color", "R,G,B",
+                           "What the body looks like under even light, linear, each 0 to 0.999; with --mean-free-path",
+                           parse_rgb, arguments.diffuse_color);
+  auto* path = add_parsed(command, "--mean-free-path", "R,G,B|L",
+                          "How far light goes in the body between events in mm, each 0.001 to 1000", parse_rgb_or_grey,
+                          arguments.mean_free_path_mm);
+  color->excludes(material)->excludes(absorption)->excludes(scattering)->needs(path);
+  path->needs(color);
   absorption->excludes(material)->needs(scattering);
   scattering->excludes(material)->needs(absorption);
   add_parsed(command, "--ior", "N", "Refractive index, 1 to 3", parse_index, arguments.refractive_index);
+  add_parsed(command, "--profile", profile_names(), "How light spreads below the surface (default: dipole)",
+             parse_profile, arguments.profile);
 }
 
 void add_camera_options(CLI::App& command, RenderArguments& arguments) {
@@ -115,6 +137,8 @@ void add_technique_options(CLI::App& command, RenderArguments& arguments) {
   add_parsed(command, "--shadows", shadows_names(),
              "Whether meshes hide lights (default: on for integral and reference, else off)", parse_shadows,
              arguments.shadows);
+  command.add_flag("--slab-correction", arguments.slab_correction,
+                   "Of the integral and the reference: thin parts give back what a slab would");
   add_parsed(command, "--terms", terms_names(), "Which part of the paper technique's answer", parse_terms,
              arguments.terms);
   add_parsed(command, "--kernel", "N", "Taps a side of the paper technique's kernel, 3 to 6", parse_count,
@@ -190,8 +214,8 @@ void add_render_options(CLI::App& command, RenderArguments& arguments) {
   add_lights(command, "--spot-light", "X,Y,Z,DX,DY,DZ,INNER,OUTER,R,G,B",
              "A spot: place, axis, angles from the axis in degrees, W/sr; may be repeated", parse_spot_light,
              arguments.lights);
-  for (const char* flag : {"--material", "--absorption", "--scattering", "--ior", "--mm-per-unit", "--height-mm",
-                           "--point-light", "--directional-light", "--spot-light"}) {
+  for (const char* flag : {"--material", "--absorption", "--scattering", "--diffuse-color", "--mean-free-path", "--ior",
+                           "--profile", "--mm-per-unit", "--height-mm", "--point-light", "--directional-light", "--spot-light"}) {
     scene->excludes(command.get_option(flag));
   }
 }

@@ -23,6 +23,7 @@ struct RenderArguments {
   std::optional<Technique> technique;
   std::optional<Quality> quality;
   std::optional<Shadows> shadows;
+  bool slab_correction = false;
   std::optional<Terms> terms;
   std::optional<uint32_t> kernel_taps;
   std::optional<uint32_t> face_size_px;
@@ -35,7 +36,10 @@ struct RenderArguments {
   std::optional<std::string> preset;
   std::optional<Rgb> absorption_mm;
   std::optional<Rgb> reduced_scattering_mm;
+  std::optional<Rgb> diffuse_color;
+  std::optional<Rgb> mean_free_path_mm;
   std::optional<float> refractive_index;
+  std::optional<Profile> profile;
 
   std::optional<double> millimetres_per_unit;
   std::optional<double> height_mm;

@@ -36,6 +36,10 @@ absl::Status fill_scene(const Scene& scene, const RenderPlan& plan, Progress& pr
   for (const Material& material : plan.materials) {
     absl::StatusOr<MaterialHandle> handle = scene.add_material(material);
     if (!handle.ok()) return handle.status();
+    const absl::StatusOr<MaterialInfo> info = scene.material(*handle);
+    if (!info.ok()) return info.status();
+    progress.clear();
+    for (const std::string& warning : info->warnings) print_note("warning: material: " + warning);
     materials.push_back(*std::move(handle));
   }
   for (const Light& light : plan.lights) {

@@ -43,16 +43,26 @@ absl::Status read_meshes(const fs::path& path, const Matrix& scene_from_file, si
 }
 
 Material material_of(const RenderArguments& arguments) {
-  // The one needs the other on the command line.
-  if (!arguments.absorption_mm || !arguments.reduced_scattering_mm) return {arguments.preset.value_or(kDefaultPreset)};
-  Coefficients coefficients{*arguments.absorption_mm, *arguments.reduced_scattering_mm};
-  if (arguments.refractive_index) coefficients.refractive_index = *arguments.refractive_index;
-  return {coefficients};
+  Material material;
+  if (arguments.profile) material.profile = *arguments.profile;
+  // Of each pair, the one needs the other on the command line.
+  if (arguments.absorption_mm && arguments.reduced_scattering_mm) {
+    Coefficients coefficients{*arguments.absorption_mm, *arguments.reduced_scattering_mm};
+    if (arguments.refractive_index) coefficients.refractive_index = *arguments.refractive_index;
+    material.model = coefficients;
+  } else if (arguments.diffuse_color && arguments.mean_free_path_mm) {
+    DiffuseColor color{*arguments.diffuse_color, *arguments.mean_free_path_mm};
+    if (arguments.refractive_index) color.refractive_index = *arguments.refractive_index;
+    material.model = color;
+  } else {
+    material.model = arguments.preset.value_or(kDefaultPreset);
+  }
+  return material;
 }
 
 absl::Status take_arguments(const RenderArguments& arguments, RenderPlan* plan, FileUnits* units) {
   plan->materials = {material_of(arguments)};
-  if (!arguments.absorption_mm) plan->refractive_index = arguments.refractive_index;
+  if (!arguments.absorption_mm && !arguments.diffuse_color) plan->refractive_index = arguments.refractive_index;
   plan->lights = arguments.lights;
   for (const std::string& mesh : arguments.meshes) {
     if (absl::Status status = read_meshes(mesh, MeshData().scene_from_mesh, 0, plan, units); !status.ok())
@@ -91,6 +101,7 @@ void take_settings(const RenderArguments& arguments, RenderOptions* options) {
   if (arguments.technique) settings.technique = *arguments.technique;
   if (arguments.quality) settings.quality = *arguments.quality;
   if (arguments.shadows) settings.shadows = *arguments.shadows;
+  if (arguments.slab_correction) settings.slab_correction = true;
   if (arguments.terms) settings.paper.terms = *arguments.terms;
   if (arguments.kernel_taps) settings.paper.kernel_taps = *arguments.kernel_taps;
   if (arguments.face_size_px) settings.paper.face_size_px = *arguments.face_size_px;

@@ -27,6 +27,7 @@ void print_text(const SceneDescription& description) {
     fmt::print("{}  {}  absorption {}  scattering {}  ior {}\n", info.handle.name, preset ? *preset : "free",
                text(info.resolved.absorption_mm), text(info.resolved.reduced_scattering_mm),
                info.resolved.refractive_index);
+    for (const std::string& warning : info.warnings) fmt::print("  warning: {}\n", warning);
   }
   for (const LightInfo& info : description.lights) {
     fmt::print("{}  {}\n", info.handle.name, to_json(info.light).dump());

@@ -27,6 +27,8 @@ absl::StatusOr<Section> figure_terms(const Studio& studio, const FigureOptions& 
 absl::StatusOr<Section> figure_morph(const Studio& studio, const FigureOptions& options);
 /// Every preset on one mesh.
 absl::StatusOr<Section> figure_materials(const Studio& studio, const FigureOptions& options);
+/// Materials given by colour and mean free path, and the coefficients that they come to.
+absl::StatusOr<Section> figure_colors(const Studio& studio, const FigureOptions& options);
 /// paper, integral and reference, with their errors.
 absl::StatusOr<Section> figure_techniques(const Studio& studio, const FigureOptions& options);
 

@@ -59,30 +59,12 @@ v1::Vec3 to_proto(const Vec3& value) { return vec3(value.x, value.y, value.z); }
 
 v1::Vec3 to_proto(const Rgb& value) { return vec3(value.r, value.g, value.b); }
 
-v1::Coefficients to_proto(const Coefficients& coefficients) {
-  v1::Coefficients message;
-  *message.mutable_absorption_mm() = to_proto(coefficients.absorption_mm);
-  *message.mutable_reduced_scattering_mm() = to_proto(coefficients.reduced_scattering_mm);
-  message.set_refractive_index(coefficients.refractive_index);
-  return message;
-}
-
 v1::Camera to_proto(const Camera& camera) {
   v1::Camera message;
   *message.mutable_eye() = to_proto(camera.eye);
   *message.mutable_target() = to_proto(camera.target);
   *message.mutable_up() = to_proto(camera.up);
   message.set_fov_y_deg(camera.fov_y_deg);
-  return message;
-}
-
-v1::Material to_proto(const Material& material) {
-  v1::Material message;
-  if (const auto* preset = std::get_if<std::string>(&material.model)) {
-    message.set_preset(*preset);
-  } else {
-    *message.mutable_coefficients() = to_proto(std::get<Coefficients>(material.model));
-  }
   return message;
 }
 
@@ -118,6 +100,7 @@ v1::RenderSettings to_proto(const RenderSettings& settings) {
   message.set_exposure_ev(settings.exposure_ev);
   message.set_quality(static_cast<v1::Quality>(settings.quality));
   message.set_shadows(static_cast<v1::Shadows>(settings.shadows));
+  message.set_slab_correction(settings.slab_correction);
   message.set_auto_exposure(settings.auto_exposure);
   message.set_tone_mapping(static_cast<v1::ToneMapping>(settings.tone_mapping));
   message.set_samples(settings.samples);
@@ -142,21 +125,6 @@ v1::RenderFrameRequest to_proto(const RenderOptions& options) {
 Vec3 vec3_from_proto(const v1::Vec3& message) { return {message.x(), message.y(), message.z()}; }
 
 Rgb rgb_from_proto(const v1::Vec3& message) { return {message.x(), message.y(), message.z()}; }
-
-Coefficients from_proto(const v1::Coefficients& message) {
-  Coefficients coefficients{rgb_from_proto(message.absorption_mm()), rgb_from_proto(message.reduced_scattering_mm())};
-  if (message.refractive_index() != 0) coefficients.refractive_index = message.refractive_index();
-  return coefficients;
-}
-
-Material from_proto(const v1::Material& message) {
-  if (message.has_coefficients()) return {from_proto(message.coefficients())};
-  return {message.preset()};
-}
-
-MaterialPreset from_proto(const v1::MaterialPreset& message) {
-  return {message.name(), from_proto(message.coefficients()), message.source()};
-}
 
 Light from_proto(const v1::Light& message) {
   if (message.has_directional()) {
@@ -197,6 +165,7 @@ MeshInfo from_proto(const v1::Mesh& message) {
 RenderSettings from_proto(const v1::RenderSettings& message) {
   RenderSettings settings{.technique = static_cast<Technique>(message.technique()),
                           .shadows = static_cast<Shadows>(message.shadows()),
+                          .slab_correction = message.slab_correction(),
                           .exposure_ev = message.exposure_ev(),
                           .auto_exposure = message.auto_exposure()};
   if (message.tone_mapping() != v1::TONE_MAPPING_UNSPECIFIED) {

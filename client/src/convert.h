@@ -30,6 +30,7 @@ Vec3 vec3_from_proto(const v1::Vec3& message);
 Rgb rgb_from_proto(const v1::Vec3& message);
 Coefficients from_proto(const v1::Coefficients& message);
 Material from_proto(const v1::Material& message);
+MaterialInfo info_from_proto(const v1::Material& message);
 MaterialPreset from_proto(const v1::MaterialPreset& message);
 Light from_proto(const v1::Light& message);
 SceneInfo from_proto(const v1::Scene& message);

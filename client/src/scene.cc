@@ -40,11 +40,19 @@ absl::StatusOr<MaterialHandle> Scene::add_material(const Material& material) con
   return MaterialHandle{response->material().name()};
 }
 
+absl::StatusOr<MaterialInfo> Scene::material(const MaterialHandle& handle) const {
+  v1::GetMaterialRequest request;
+  request.set_name(handle.name);
+  const auto response = connection_->call(connection_->scene_service(), &SceneStub::GetMaterial, request);
+  if (!response.ok()) return response.status();
+  return internal::info_from_proto(*response);
+}
+
 absl::StatusOr<uint64_t> Scene::update_material(const MaterialHandle& handle, const Material& material) const {
   v1::UpdateMaterialRequest request;
   *request.mutable_material() = to_proto(material);
   request.mutable_material()->set_name(handle.name);
-  request.mutable_update_mask()->add_paths("model");
+  for (const char* path : {"model", "profile"}) request.mutable_update_mask()->add_paths(path);
   request.set_request_id(new_request_id());
   return revision_of(connection_->call(connection_->scene_service(), &SceneStub::UpdateMaterial, request));
 }
@@ -135,7 +143,7 @@ absl::StatusOr<SceneDescription> Scene::describe() const {
 
   SceneDescription description{from_proto(*scene_answer)};
   for (const v1::Material& material : material_answer->materials()) {
-    description.materials.push_back({{material.name()}, from_proto(material), from_proto(material.resolved())});
+    description.materials.push_back(internal::info_from_proto(material));
   }
   for (const v1::Light& light : light_answer->lights()) {
     description.lights.push_back({{light.name()}, from_proto(light)});

@@ -63,6 +63,7 @@ std::string first_output_field(const SceneFileForm& form) {
   if (scene.light_count() != 0) return "scene.light_count";
   for (int i = 0; i < form.materials_size(); ++i) {
     if (form.materials(i).has_resolved()) return fmt::format("materials[{}].resolved", i);
+    if (form.materials(i).warnings_size() != 0) return fmt::format("materials[{}].warnings", i);
   }
   for (int i = 0; i < form.lights_size(); ++i) {
     if (!form.lights(i).name().empty()) return fmt::format("lights[{}].name", i);
@@ -88,7 +89,11 @@ absl::Status convert_materials(const fs::path& path, const SceneFileForm& form, 
       return invalid(path, fmt::format("materials[{}].name: '{}' is given twice", i, material.name()));
     }
     if (material.model_case() == v1::Material::MODEL_NOT_SET) {
-      return invalid(path, fmt::format("materials[{}]: must have preset or coefficients", i));
+      return invalid(path, fmt::format("materials[{}]: must have preset, coefficients, diffuse_color or volume", i));
+    }
+    for (const auto& [given, field] :
+         {std::pair(material.has_coat(), "coat"), std::pair(material.has_textures(), "textures")}) {
+      if (given) return invalid(path, fmt::format("materials[{}].{}: is not drawn yet", i, field));
     }
     scene->materials.push_back({material.name(), internal::from_proto(material)});
   }

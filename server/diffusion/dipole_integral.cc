@@ -25,9 +25,12 @@ constexpr float kAbsorbing = 0.3f;
 }  // namespace
 
 Openings openings_of(Quality quality, const optics::Coefficients& material) {
-  const optics::Dipole dipole = optics::make_dipole(material);
-  const glm::vec3 absorption = dipole.effective_transport_mm * dipole.mean_free_path_mm;
-  const bool absorbing = std::max({absorption.x, absorption.y, absorption.z}) > kAbsorbing;
+  const optics::ReflectanceProfile profile = optics::make_profile(material);
+  bool absorbing = false;
+  for (int c = 0; c < 3; ++c) {
+    const float extinction = material.absorption_mm[c] + material.reduced_scattering_mm[c];
+    absorbing = absorbing || profile[c].terms[0].transport_mm > kAbsorbing * extinction;
+  }
   switch (quality) {
     case Quality::kDraft:
       return absorbing ? Openings{0.34f, 0.50f} : Openings{0.42f, 0.60f};

@@ -14,13 +14,30 @@ constexpr double kNegligible = 1e-4;
 /// From the tables' first v² to their last.
 constexpr double kTableSpan = 65536;
 
-/// h(d) = (1 + σd) e^(−σd)/d³ with d² = r² + height², and its derivatives in r².
-KernelValue source_kernel(double height, double transport, double distance2) {
-  const double d = std::sqrt(std::max(distance2 + height * height, 1e-3 * height * height));
-  const double s = transport * d, e = std::exp(-s), d2 = d * d;
-  return {e * (1 + s) / (d * d2), -0.5 * e * (3 + s * (3 + s)) / (d * d2 * d2),
-          0.25 * e * (15 + s * (15 + s * (6 + s))) / (d * d2 * d2 * d2)};
+/// One term of a profile as a function of r², and its derivatives.
+KernelValue term_kernel(const optics::ProfileTerm& term, double distance2) {
+  const double height2 = term.height_mm * term.height_mm;
+  const double d = std::sqrt(std::max(distance2 + height2, 1e-3 * height2));
+  const double s = term.transport_mm * d, e = std::exp(-s), d2 = d * d;
+  // (1 + σd) e^(−σd)/d³, then e^(−σd)/d.
+  const double flux = term.flux_mm * e / (d * d2), fluence = term.fluence_mm * e / d;
+  return {flux * (1 + s) + fluence, -0.5 / d2 * (flux * (3 + s * (3 + s)) + fluence * (1 + s)),
+          0.25 / (d2 * d2) * (flux * (15 + s * (15 + s * (6 + s))) + fluence * (3 + s * (3 + s)))};
 }
+
+KernelValue profile_kernel(const optics::ChannelProfile& profile, double distance2) {
+  KernelValue sum;
+  for (const optics::ProfileTerm& term : profile.terms) {
+    const KernelValue k = term_kernel(term, distance2);
+    sum.value += k.value;
+    sum.first += k.first;
+    sum.second += k.second;
+  }
+  return sum;
+}
+
+/// Whether Rd is infinite at r = 0.
+bool is_singular(const optics::ChannelProfile& profile) { return profile.terms[0].height_mm == 0; }
 
 /// The cubic through four points, as coefficients of powers of t.
 std::array<double, 4> interpolate_cubic(const std::array<double, 4>& t, const std::array<double, 4>& values) {
@@ -63,15 +80,15 @@ void tabulate(const KernelDomain& domain, int channel, const Kernel& kernel, Ker
 }
 
 /// The last of log-spaced r with r²·Rd above a share of its peak, over all channels, mm.
-double effective_range(const optics::Dipole& dipole, double diameter) {
+double effective_range(const optics::ReflectanceProfile& profile, double diameter) {
   double range = 0;
-  for (int c = 0; c < 3; ++c) {
+  for (const optics::ChannelProfile& channel : profile) {
     double peak = 0;
-    const double first = 0.1 * dipole.mean_free_path_mm[c];
-    for (double r = first; r < diameter; r *= 1.1) peak = std::max(peak, r * r * dipole_kernel(dipole, c, r * r).value);
+    const double first = 0.1 * channel.smooth_mm;
+    for (double r = first; r < diameter; r *= 1.1) peak = std::max(peak, r * r * profile_kernel(channel, r * r).value);
     double last = first;
     for (double r = first; r < diameter; r *= 1.1) {
-      if (r * r * dipole_kernel(dipole, c, r * r).value > kNegligible * peak) last = r;
+      if (r * r * profile_kernel(channel, r * r).value > kNegligible * peak) last = r;
     }
     range = std::max(range, 1.1 * last);
   }
@@ -84,44 +101,73 @@ double carried_share(double deviation, double spacing) {
   return t * t * (3 - 2 * t);
 }
 
+GaussianSum log_spaced(double narrowest_mm, size_t count, double ratio) {
+  GaussianSum sum{std::vector<double>(count), std::vector<double>(count, 0.0)};
+  for (size_t k = 0; k < count; ++k) sum.deviation_mm[k] = narrowest_mm * std::pow(ratio, static_cast<double>(k));
+  return sum;
+}
+
+/// Near enough to each other that the trapezoid rule holds where e^(−ar)/r is next to nothing too.
+constexpr size_t kMixtureTerms = 22;
+constexpr double kMixtureRatio = 1.3;
+
+/// e^(−ar)/r = (2/√π) ∫ e^(−r²x² − a²/4x²) dx with x = 1/√2σ, by the trapezoid rule in ln σ.
+void add_mixture(const optics::ProfileTerm& term, GaussianSum& sum) {
+  for (size_t k = 0; k < sum.weight.size(); ++k) {
+    const double x = 1 / (std::sqrt(2.0) * sum.deviation_mm[k]);
+    const double depth = term.transport_mm / (2 * x);
+    sum.weight[k] += term.fluence_mm * 2 / std::sqrt(pi) * x * std::exp(-depth * depth) * std::log(kMixtureRatio);
+  }
+}
+
 }  // namespace
 
-KernelValue dipole_kernel(const optics::Dipole& dipole, int channel, double distance2_mm2) {
-  const double scale = dipole.reduced_albedo[channel] / (4 * pi);
-  const double transport = dipole.effective_transport_mm[channel];
+KernelValue GaussianSum::at(double distance2_mm2) const {
   KernelValue sum;
-  for (const double height : {double{dipole.mean_free_path_mm[channel]}, double{dipole.virtual_height_mm[channel]}}) {
-    const KernelValue k = source_kernel(height, transport, distance2_mm2);
-    sum.value += scale * height * k.value;
-    sum.first += scale * height * k.first;
-    sum.second += scale * height * k.second;
+  for (size_t k = 0; k < weight.size(); ++k) {
+    const double rate = 0.5 / (deviation_mm[k] * deviation_mm[k]);
+    const double gaussian = weight[k] * std::exp(-rate * distance2_mm2);
+    sum.value += gaussian;
+    sum.first -= rate * gaussian;
+    sum.second += rate * rate * gaussian;
   }
   return sum;
 }
 
-glm::vec3 smooth_distance_mm(const optics::Dipole& dipole) {
-  return dipole.mean_free_path_mm / (1.0f + dipole.effective_transport_mm * dipole.mean_free_path_mm / 3.0f);
+double GaussianSum::total() const {
+  double sum = 0;
+  for (size_t k = 0; k < weight.size(); ++k) sum += weight[k] * 2 * pi * deviation_mm[k] * deviation_mm[k];
+  return sum;
 }
 
-GaussianSum fit_gaussians(const optics::Dipole& dipole, int channel) {
-  constexpr int kTerms = GaussianSum::kTerms;
-  const double z = smooth_distance_mm(dipole)[channel];
-  const double zr = dipole.mean_free_path_mm[channel];
-  GaussianSum sum;
-  for (int k = 0; k < kTerms; ++k) sum.deviation_mm[k] = 0.4 * z * std::pow(std::sqrt(3.0), k);
+KernelValue carried_kernel(const optics::ChannelProfile& profile, const GaussianSum& gaussians, double distance2_mm2) {
+  return is_singular(profile) ? gaussians.at(distance2_mm2) : profile_kernel(profile, distance2_mm2);
+}
 
-  // ∫ Rd dA, to weigh the tail against.
-  double total = 0;
-  for (double r = 0.01 * z; r < 1000 * z; r *= 1.05)
-    total += 2 * pi * r * r * std::log(1.05) * dipole_kernel(dipole, channel, r * r).value;
+glm::vec3 smooth_distance_mm(const optics::ReflectanceProfile& profile) {
+  return {profile[0].smooth_mm, profile[1].smooth_mm, profile[2].smooth_mm};
+}
+
+GaussianSum fit_gaussians(const optics::ChannelProfile& profile) {
+  constexpr int kTerms = 12;
+  const double z = profile.smooth_mm;
+  if (is_singular(profile)) {
+    GaussianSum mixture = log_spaced(0.4 * z, kMixtureTerms, kMixtureRatio);
+    for (const optics::ProfileTerm& term : profile.terms) add_mixture(term, mixture);
+    return mixture;
+  }
+
+  GaussianSum sum = log_spaced(0.4 * z, kTerms, std::sqrt(3.0));
+  const double zr = profile.terms[0].height_mm;
 
   // Normal equations of the weighted least squares.
   double matrix[kTerms][kTerms] = {}, right[kTerms] = {};
   constexpr int kSamples = 160;
   for (int i = 0; i < kSamples; ++i) {
     const double r = 0.03 * z * std::pow(4000.0, static_cast<double>(i) / (kSamples - 1));
-    const double rd = dipole_kernel(dipole, channel, r * r).value;
-    const double weight = 1 / (rd + 0.01 * total / (pi * (r * r + zr * zr)));
+    const double rd = profile_kernel(profile, r * r).value;
+    // ∫ Rd dA weighs the tail.
+    const double weight = 1 / (rd + 0.01 * profile.total / (pi * (r * r + zr * zr)));
     double row[kTerms];
     for (int k = 0; k < kTerms; ++k)
       row[k] = weight * std::exp(-0.5 * r * r / (sum.deviation_mm[k] * sum.deviation_mm[k]));
@@ -142,11 +188,13 @@ GaussianSum fit_gaussians(const optics::Dipole& dipole, int channel) {
 }
 
 void KernelSet::set_material(const optics::Coefficients& material) {
-  dipole_ = optics::make_dipole(material);
-  const glm::vec3 smooth = smooth_distance_mm(dipole_);
+  profile_ = optics::make_profile(material);
+  const glm::vec3 smooth = smooth_distance_mm(profile_);
   smooth_mm_ = std::min({smooth.x, smooth.y, smooth.z});
   for (int c = 0; c < 3; ++c) {
-    gaussians_[c] = fit_gaussians(dipole_, c);
+    gaussians_[c] = fit_gaussians(profile_[c]);
+    narrow_response_[c] =
+        is_singular(profile_[c]) ? static_cast<float>(profile_[c].total - gaussians_[c].total()) : 0.0f;
   }
   diameter_mm_ = 0;
 }
@@ -156,15 +204,15 @@ void KernelSet::prepare(float diameter_mm, const std::vector<float>& spacing2_mm
   const float diameter = std::exp2(std::ceil(std::log2(std::clamp(diameter_mm, 1e-6f, 1e18f))));
   if (diameter != diameter_mm_) {
     diameter_mm_ = diameter;
-    const double range = effective_range(dipole_, diameter);
+    const double range = effective_range(profile_, diameter);
     // What v² is at r = 0, mm². Never wider than the kernel's own peak: beyond the tables the kernel falls off by r⁻³,
     // as it does where nothing is absorbed; near the peak nothing would help.
     const double peak2 = smooth_mm_ * smooth_mm_;
     const double first2 = std::clamp(range * range / (0.9 * kTableSpan), 0.3 * peak2, peak2);
     domain_.scale = static_cast<float>(KernelDomain::kSmallest * KernelDomain::kSmallest / first2);
     for (int c = 0; c < 3; ++c) {
-      tabulate(
-          domain_, c, [&](double distance2) { return dipole_kernel(dipole_, c, distance2); }, far_);
+      const auto far = [&](double distance2) { return carried_kernel(profile_[c], gaussians_[c], distance2); };
+      tabulate(domain_, c, far, far_);
     }
     near_.fill(nullptr);
   }
@@ -179,24 +227,25 @@ void KernelSet::build(uint32_t step) {
   const double spacing = spacing_of_step(step);
   bool whole = true;
   for (const GaussianSum& sum : gaussians_) whole = whole && carried_share(sum.deviation_mm[0], spacing) == 1;
-  local_response_[step] = glm::vec3(0);
+  local_response_[step] = narrow_response_;
   if (whole) {
     near_[step] = &far_;
     return;
   }
   if (!built_[step]) built_[step] = std::make_unique<KernelTable>();
   for (int c = 0; c < 3; ++c) {
-    std::array<double, GaussianSum::kTerms> rate{}, left_out{};
+    const GaussianSum& gaussians = gaussians_[c];
+    std::vector<double> rate(gaussians.weight.size()), left_out(gaussians.weight.size());
     double response = 0;
     for (size_t k = 0; k < left_out.size(); ++k) {
-      const double variance = gaussians_[c].deviation_mm[k] * gaussians_[c].deviation_mm[k];
+      const double variance = gaussians.deviation_mm[k] * gaussians.deviation_mm[k];
       rate[k] = 0.5 / variance;
-      left_out[k] = gaussians_[c].weight[k] * (1 - carried_share(gaussians_[c].deviation_mm[k], spacing));
+      left_out[k] = gaussians.weight[k] * (1 - carried_share(gaussians.deviation_mm[k], spacing));
       response += left_out[k] * 2 * pi * variance;
     }
-    local_response_[step][c] = static_cast<float>(response);
+    local_response_[step][c] += static_cast<float>(response);
     const auto near = [&](double distance2) {
-      KernelValue k = dipole_kernel(dipole_, c, distance2);
+      KernelValue k = carried_kernel(profile_[c], gaussians_[c], distance2);
       for (size_t i = 0; i < left_out.size(); ++i) {
         if (left_out[i] == 0) continue;
         const double gaussian = left_out[i] * std::exp(-rate[i] * distance2);

@@ -8,7 +8,7 @@
 
 #include "diffusion/node_tree.h"
 #include "glm/vec3.hpp"
-#include "optics/dipole.h"
+#include "optics/profile.h"
 
 namespace diaphane::diffusion {
 
@@ -17,19 +17,24 @@ struct KernelValue {
   double value = 0, first = 0, second = 0;
 };
 
-/// Rd of one channel at r² mm² (r² > −zr²), exactly.
-KernelValue dipole_kernel(const optics::Dipole& dipole, int channel, double distance2_mm2);
+/// z of each channel, mm: the distance on which its kernel is smooth.
+glm::vec3 smooth_distance_mm(const optics::ReflectanceProfile& profile);
 
-/// z = zr/(1 + σ zr/3): the distance on which a channel's kernel is smooth, mm.
-glm::vec3 smooth_distance_mm(const optics::Dipole& dipole);
-
-/// Σ w_k e^(−r²/2σ_k²), σ_k = 0.4 z √3^k: Rd of one channel, with which its narrow part can be taken out.
+/// Σ w_k e^(−r²/2σ_k²), σ_k rising from 0.4 z: Rd of one channel, with which its narrow part can be taken out.
 struct GaussianSum {
-  static constexpr int kTerms = 12;
-  std::array<double, kTerms> deviation_mm{};
-  std::array<double, kTerms> weight{};  ///< ≥ 0
+  std::vector<double> deviation_mm;
+  std::vector<double> weight;  ///< ≥ 0
+
+  KernelValue at(double distance2_mm2) const;
+  double total() const;  ///< over the plane
 };
-GaussianSum fit_gaussians(const optics::Dipole& dipole, int channel);
+/// A fit to a dipole's Rd. For normalized diffusion, whose e^(−ar)/r is a mixture of Gaussians of every width, the part
+/// of that mixture from σ_0 up.
+GaussianSum fit_gaussians(const optics::ChannelProfile& profile);
+
+/// What of Rd vertices can carry at all: all of a dipole's. Normalized diffusion is infinite at r = 0; there it is
+/// fit_gaussians(), and what is narrower is left to the local term.
+KernelValue carried_kernel(const optics::ChannelProfile& profile, const GaussianSum& gaussians, double distance2_mm2);
 
 /// With v = √(scale·r² + 4), clamped to 2..512: f·v³, f′·v⁵ and f″·v⁷ of each channel are cubics in v on eight segments
 /// of one octave each; the segment is the low three bits of v's exponent. (In v, not v²: the nearest singularity of
@@ -69,8 +74,9 @@ class KernelSet {
  private:
   void build(uint32_t step);
 
-  optics::Dipole dipole_;
+  optics::ReflectanceProfile profile_;
   std::array<GaussianSum, 3> gaussians_;
+  glm::vec3 narrow_response_{0};  ///< of what no vertices carry
   float smooth_mm_ = 1;
   float diameter_mm_ = 0;
   KernelDomain domain_;

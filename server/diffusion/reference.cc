@@ -1,6 +1,9 @@
 #include "diffusion/reference.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <mutex>
 #include <numbers>
 
@@ -29,12 +32,11 @@ struct SourceArrays {
   const float* row(size_t field) const { return values.get() + field * count; }
 };
 
-/// Constants of one channel: what of Rd does not depend on r.
-struct ChannelConstants {
-  float transport_mm;
-  float real_height2, virtual_height2;
-  float real_weight, virtual_weight;  ///< α'/4π times the height
+/// A term of one channel: what of it does not depend on r.
+struct TermConstants {
+  float transport_mm, height2, flux, fluence;
 };
+using ChannelConstants = std::array<TermConstants, 2>;
 
 }  // namespace diaphane::diffusion
 #endif
@@ -43,15 +45,14 @@ HWY_BEFORE_NAMESPACE();
 namespace diaphane::diffusion::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// weight (1 + σd) e^(−σd)/d³ at d = √(r² + height²).
+/// (flux (1 + σd)/d³ + fluence/d) e^(−σd) at d = √(r² + height²).
 template <class D, class V>
-HWY_INLINE V source_term(D d, V distance2, float height2, float weight, float transport) {
-  const V d2 = hn::Add(distance2, hn::Set(d, height2));
+HWY_INLINE V term_value(D d, V distance2, const TermConstants& k) {
+  const V d2 = hn::Add(distance2, hn::Set(d, k.height2));
   const V range = hn::Sqrt(d2);
-  const V depth = hn::Mul(hn::Set(d, transport), range);
-  const V numerator =
-      hn::Mul(hn::Mul(hn::Set(d, weight), hn::Add(hn::Set(d, 1.0f), depth)), hn::Exp(d, hn::Neg(depth)));
-  return hn::Div(numerator, hn::Mul(d2, range));
+  const V depth = hn::Mul(hn::Set(d, k.transport_mm), range);
+  const V flux = hn::Div(hn::Mul(hn::Set(d, k.flux), hn::Add(hn::Set(d, 1.0f), depth)), d2);
+  return hn::Div(hn::Mul(hn::Add(flux, hn::Set(d, k.fluence)), hn::Exp(d, hn::Neg(depth))), range);
 }
 
 void sum_block(const ChannelConstants* channels, const SourceArrays& sources, size_t begin, size_t end,
@@ -66,9 +67,7 @@ void sum_block(const ChannelConstants* channels, const SourceArrays& sources, si
     const V dz = hn::Sub(z, hn::Load(d, sources.row(2) + i));
     const V distance2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
     for (int c = 0; c < 3; ++c) {
-      const ChannelConstants& k = channels[c];
-      const V rd = hn::Add(source_term(d, distance2, k.real_height2, k.real_weight, k.transport_mm),
-                           source_term(d, distance2, k.virtual_height2, k.virtual_weight, k.transport_mm));
+      const V rd = hn::Add(term_value(d, distance2, channels[c][0]), term_value(d, distance2, channels[c][1]));
       total[c] = hn::MulAdd(rd, hn::Load(d, sources.row(3 + c) + i), total[c]);
     }
   }
@@ -82,6 +81,9 @@ HWY_AFTER_NAMESPACE();
 namespace diaphane::diffusion {
 HWY_EXPORT(sum_block);
 namespace {
+
+/// Of l/s, what rounds off the pole of normalized diffusion.
+constexpr double kSoftening = 0.25;
 
 SourceArrays lit_sources(const Surfels& surfels) {
   SourceArrays sources;
@@ -104,14 +106,37 @@ SourceArrays lit_sources(const Surfels& surfels) {
 
 }  // namespace
 
-absl::StatusOr<std::vector<glm::vec3>> reference_radiosity(const optics::Dipole& dipole, const Surfels& surfels,
+ReferenceKernel reference_kernel(const optics::ReflectanceProfile& profile) {
+  ReferenceKernel kernel{profile, glm::vec3(0), std::numeric_limits<float>::infinity()};
+  for (int c = 0; c < 3; ++c) {
+    optics::ChannelProfile& channel = kernel.spread[c];
+    if (channel.terms[0].height_mm > 0) {
+      kernel.spacing_mm = std::min(kernel.spacing_mm, static_cast<float>(0.5 * channel.terms[0].height_mm));
+      continue;
+    }
+    const double height = kSoftening / channel.terms[0].transport_mm;
+    double spread = 0;
+    for (optics::ProfileTerm& term : channel.terms) {
+      term.height_mm = height;
+      spread += 2 * std::numbers::pi * term.fluence_mm / term.transport_mm * std::exp(-term.transport_mm * height);
+    }
+    kernel.local[c] = static_cast<float>(channel.total - spread);
+    kernel.spacing_mm = std::min(kernel.spacing_mm, static_cast<float>(height));
+  }
+  return kernel;
+}
+
+absl::StatusOr<std::vector<glm::vec3>> reference_radiosity(const optics::ReflectanceProfile& profile,
+                                                           const Surfels& surfels,
                                                            std::span<const glm::vec3> receivers_mm,
                                                            const ReferenceOptions& options) {
   ChannelConstants channels[3];
   for (int c = 0; c < 3; ++c) {
-    const float scale = dipole.reduced_albedo[c] / (4 * std::numbers::pi_v<float>);
-    const float real = dipole.mean_free_path_mm[c], image = dipole.virtual_height_mm[c];
-    channels[c] = {dipole.effective_transport_mm[c], real * real, image * image, scale * real, scale * image};
+    for (size_t k = 0; k < 2; ++k) {
+      const optics::ProfileTerm& term = profile[c].terms[k];
+      channels[c][k] = {static_cast<float>(term.transport_mm), static_cast<float>(term.height_mm * term.height_mm),
+                        static_cast<float>(term.flux_mm), static_cast<float>(term.fluence_mm)};
+    }
   }
   const SourceArrays sources = lit_sources(surfels);
   std::vector<glm::vec3> radiosity(receivers_mm.size());

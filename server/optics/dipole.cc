@@ -10,12 +10,6 @@
 namespace diaphane::optics {
 namespace {
 
-/// A = (1 + Fdr)/(1 − Fdr): what the mismatched boundary sends back.
-float boundary_mismatch(float refractive_index) {
-  const float reflectance = diffuse_fresnel_reflectance(refractive_index);
-  return (1 + reflectance) / (1 - reflectance);
-}
-
 /// One source's share of 4π Rd/α': z (1 + σd) e^(−σd)/d³.
 float source_term(float height_mm, float transport_mm, float distance_mm) {
   const float d = std::sqrt(distance_mm * distance_mm + height_mm * height_mm);
@@ -23,6 +17,11 @@ float source_term(float height_mm, float transport_mm, float distance_mm) {
 }
 
 }  // namespace
+
+float boundary_mismatch(float refractive_index) {
+  const float reflectance = diffuse_fresnel_reflectance(refractive_index);
+  return (1 + reflectance) / (1 - reflectance);
+}
 
 float diffuse_fresnel_reflectance(float refractive_index) {
   if (refractive_index <= 1) return 0;
@@ -61,13 +60,6 @@ glm::vec3 diffuse_reflectance(const Dipole& dipole, float distance_mm) {
                                              source_term(dipole.virtual_height_mm[c], transport, distance_mm));
   }
   return rd;
-}
-
-glm::vec3 total_reflectance(const Coefficients& material) {
-  const glm::vec3 albedo = material.reduced_scattering_mm / (material.absorption_mm + material.reduced_scattering_mm);
-  const glm::vec3 root = glm::sqrt(3.0f * (1.0f - albedo));
-  const float mismatch = boundary_mismatch(material.refractive_index);
-  return albedo * 0.5f * (1.0f + glm::exp(-4.0f / 3.0f * mismatch * root)) * glm::exp(-root);
 }
 
 }  // namespace diaphane::optics

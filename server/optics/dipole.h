@@ -5,12 +5,18 @@
 
 namespace diaphane::optics {
 
+/// How light spreads below the surface; optics/profile.h has their formulae.
+enum class Profile { kDipole, kBetterDipole, kNormalizedDiffusion };
+
 /// What a body is made of. Absorption σa ≥ 0 and reduced scattering σ's > 0 in mm⁻¹, linear RGB; η is the ratio of
 /// refractive indices, inside over outside, 1..3.
 struct Coefficients {
   glm::vec3 absorption_mm{0};
   glm::vec3 reduced_scattering_mm{1};
   float refractive_index = 1.3f;
+  Profile profile = Profile::kDipole;
+
+  friend bool operator==(const Coefficients&, const Coefficients&) = default;
 };
 
 /// The dipole's constants for one material, per channel, in mm and mm⁻¹.
@@ -28,9 +34,8 @@ Dipole make_dipole(const Coefficients& material);
 /// Rd(r) in mm⁻², r ≥ 0 the straight-line distance in mm. JB02, with distances √(r² + z²).
 glm::vec3 diffuse_reflectance(const Dipole& dipole, float distance_mm);
 
-/// ∫ Rd dA over the plane: the share of a uniform irradiance that a half-space gives back.
-/// (α'/2)(1 + e^(−4/3·A·√(3(1−α'))))·e^(−√(3(1−α'))). JMLH01.
-glm::vec3 total_reflectance(const Coefficients& material);
+/// A = (1 + Fdr)/(1 − Fdr): what the mismatched boundary sends back, η ≥ 1.
+float boundary_mismatch(float refractive_index);
 
 /// Average diffuse Fresnel reflectance Fdr inside a body of refractive index η ≥ 1; 0 at η = 1.
 float diffuse_fresnel_reflectance(float refractive_index);

@@ -8,6 +8,8 @@
 #include "diffusion/reference.h"
 #include "glm/geometric.hpp"
 #include "render/lights.h"
+#include "render/slab_correction.h"
+#include "render/thickness.h"
 #include "tbb/parallel_for.h"
 
 namespace diaphane::render {
@@ -26,21 +28,60 @@ diffusion::IrradianceAt irradiance_on(const BruteForceBody& body) {
   };
 }
 
-}  // namespace
-
-absl::StatusOr<std::vector<glm::vec3>> brute_force_radiosity(const BruteForceBody& body,
+absl::StatusOr<std::vector<glm::vec3>> uncorrected_radiosity(const BruteForceBody& body,
                                                              std::span<const glm::vec3> positions_mm,
+                                                             std::span<const glm::vec3> normals,
                                                              const std::atomic<bool>& cancelled,
                                                              std::function<void(double)> progress) {
-  const optics::Dipole dipole = optics::make_dipole(body.material);
-  const glm::vec3& l = dipole.mean_free_path_mm;
-  const diffusion::SurfelOptions sampling{.splits = 1, .spacing_mm = 0.5f * std::min({l.x, l.y, l.z})};
+  const diffusion::ReferenceKernel kernel = diffusion::reference_kernel(optics::make_profile(body.material));
+  const diffusion::SurfelOptions sampling{.splits = 1, .spacing_mm = kernel.spacing_mm};
   const diffusion::Surfels surfels = diffusion::sample_surface(body.topology.triangles, body.shape.positions_mm,
                                                                body.shape.normals, irradiance_on(body), sampling);
   diffusion::ReferenceOptions options;
   options.cancelled = &cancelled;
   options.progress = std::move(progress);
-  return diffusion::reference_radiosity(dipole, surfels, positions_mm, options);
+  auto radiosity = diffusion::reference_radiosity(kernel.spread, surfels, positions_mm, options);
+  if (!radiosity.ok() || kernel.local == glm::vec3(0)) return radiosity;
+  const std::vector<glm::vec3> irradiance = brute_force_irradiance(body, positions_mm, normals);
+  for (size_t i = 0; i < irradiance.size(); ++i) (*radiosity)[i] += kernel.local * irradiance[i];
+  return radiosity;
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<glm::vec3>> brute_force_radiosity(const BruteForceBody& body,
+                                                             std::span<const glm::vec3> positions_mm,
+                                                             std::span<const glm::vec3> normals,
+                                                             const std::atomic<bool>& cancelled,
+                                                             std::function<void(double)> progress) {
+  if (!body.slab_correction) {
+    return uncorrected_radiosity(body, positions_mm, normals, cancelled, std::move(progress));
+  }
+  ThicknessField thickness;
+  thickness.update(body.topology.triangles, body.shape);
+  const std::vector<OppositePoint> opposites = thickness.find(positions_mm, normals);
+  // Behind the points, those on the other side.
+  std::vector<glm::vec3> receivers(positions_mm.begin(), positions_mm.end());
+  std::vector<glm::vec3> receiver_normals(normals.begin(), normals.end());
+  for (const OppositePoint& opposite : opposites) {
+    const glm::uvec3& t = body.topology.triangles[opposite.triangle];
+    const auto at = [&](const std::vector<glm::vec3>& values) {
+      return opposite.weights.x * values[t.x] + opposite.weights.y * values[t.y] + opposite.weights.z * values[t.z];
+    };
+    receivers.push_back(at(body.shape.positions_mm));
+    const glm::vec3 sum = at(body.shape.normals);
+    const float length = glm::length(sum);
+    receiver_normals.push_back(length > 0 ? sum / length : glm::vec3(0, 0, 1));
+  }
+  auto radiosity = uncorrected_radiosity(body, receivers, receiver_normals, cancelled, std::move(progress));
+  if (!radiosity.ok()) return radiosity;
+  const SlabGains gains(body.material);
+  for (size_t i = 0; i < opposites.size(); ++i) {
+    (*radiosity)[i] = slab_corrected(gains.at(opposites[i].thickness_mm), (*radiosity)[i],
+                                     (*radiosity)[opposites.size() + i]);
+  }
+  radiosity->resize(opposites.size());
+  return radiosity;
 }
 
 std::vector<glm::vec3> brute_force_irradiance(const BruteForceBody& body, std::span<const glm::vec3> positions_mm,

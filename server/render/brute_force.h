@@ -1,4 +1,4 @@
-// Technique `reference`: the dipole by brute force at every pixel.
+// Technique `reference`: the surface integral by brute force at every pixel.
 #pragma once
 
 #include <atomic>
@@ -21,13 +21,15 @@ struct BruteForceBody {
   const optics::Coefficients& material;
   std::span<const LightStorage> lights;
   const ShadowScene* shadows;  ///< null: unshadowed
+  bool slab_correction = false;
 };
 
-/// B, linear RGB, W·mm⁻², at each of `positions_mm`: the sum over surfels at most half a mean free path apart (or a
-/// cap). `progress`, if any, is told the share done, 0..1, growing, by one thread at a time. Spread over all cores.
+/// B, linear RGB, W·mm⁻², at each of `positions_mm` with `normals`: the sum over surfels at most half a mean free path
+/// apart (or a cap); see diffusion::reference_kernel(). `progress`, if any, is told the share done, 0..1, growing, by one thread at a time. Spread over all cores.
 /// Errors: CANCELLED once `cancelled` is seen set.
 absl::StatusOr<std::vector<glm::vec3>> brute_force_radiosity(const BruteForceBody& body,
                                                              std::span<const glm::vec3> positions_mm,
+                                                             std::span<const glm::vec3> normals,
                                                              const std::atomic<bool>& cancelled,
                                                              std::function<void(double)> progress = {});
 

@@ -46,6 +46,7 @@ struct RenderSettings {
   std::optional<bool> shadows;  ///< not given: on for the integral and the reference, off for the others
   PaperSettings paper;
   float exposure_ev = 0;                          ///< stops; not applied to linear pixels
+  bool slab_correction = false;                   ///< of the integral and the reference; see slab_correction.h
   bool auto_exposure = false;                     ///< adds find_exposure_ev() of the frame
   ToneMapping tone_mapping = ToneMapping::kNone;  ///< not applied to linear pixels
   uint32_t samples = 1;                           ///< a pixel, 1..64

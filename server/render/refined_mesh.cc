@@ -91,7 +91,7 @@ void RefinedMesh::complete_normals() {
 absl::Status RefinedMesh::update(const scene::Mesh& mesh, PlacedMesh& placed, const optics::Coefficients& material,
                                  diffusion::Quality quality, StageClock& clock) {
   const std::shared_ptr<const geometry::MeshTopology>& topology = mesh.topology;
-  const glm::vec3 smooth_mm = diffusion::smooth_distance_mm(optics::make_dipole(material));
+  const glm::vec3 smooth_mm = diffusion::smooth_distance_mm(optics::make_profile(material));
   const float spacing_mm =
       share_of_smooth_distance(quality) * quarter_octave(std::min({smooth_mm.x, smooth_mm.y, smooth_mm.z}));
   const float unit_mm = quarter_octave(std::max(placed.unit_mm(), 1e-12f));

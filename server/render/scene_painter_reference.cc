@@ -54,7 +54,7 @@ absl::Status ScenePainter::draw_reference_tile(Job& job, const Tile& tile, uint8
     const DrawnMesh& drawn = job.meshes[i];
     const ShownPoints points = points_of(channels, i);
     const BruteForceBody body{*drawn.mesh->topology, drawn.state->placed.shape(), drawn.material, job.lights,
-                              shadowed ? &shadows_ : nullptr};
+                              shadowed ? &shadows_ : nullptr, job.request.settings.slab_correction};
     std::function<void(double)> progress;
     if (job.request.progress) {
       progress = [&](double share) {
@@ -65,7 +65,7 @@ absl::Status ScenePainter::draw_reference_tile(Job& job, const Tile& tile, uint8
       };
     }
     const auto leaving = job.clock.run("brute_force", [&] {
-      return brute_force_radiosity(body, points.positions_mm, job.cancelled, std::move(progress));
+      return brute_force_radiosity(body, points.positions_mm, points.normals, job.cancelled, std::move(progress));
     });
     if (!leaving.ok()) return leaving.status();
     std::vector<glm::vec3> entering;

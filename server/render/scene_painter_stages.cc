@@ -109,7 +109,7 @@ void ScenePainter::update_integral(const DrawnMesh& drawn, bool shadowed, Job& j
   MeshState& state = *drawn.state;
   RefinedMesh& refined = state.refined;
   state.light.update({refined, job.lights, drawn.material, job.request.settings.quality, shadowed ? &shadows_ : nullptr,
-                      shadowed ? shadows_generation_ : 0},
+                      shadowed ? shadows_generation_ : 0, job.request.settings.slab_correction},
                      job.clock);
   state.gpu.update(refined.topology(), refined.shape(), refined.generation(), job.clock);
   state.gpu.update_radiosity(state.light.radiosity(), state.light.generation(), job.clock);

@@ -12,11 +12,12 @@ void SurfaceLight::update(const Inputs& inputs, StageClock& clock) {
     flux_reads_.forget();
     material_reads_.forget();
     gather_reads_.forget();
+    opposite_reads_.forget();
   }
   const uint64_t placed = inputs.mesh.generation();
   const geometry::PlacedShape& shape = inputs.mesh.shape();
   const float refractive_index = inputs.material.refractive_index;
-  const Materials material{inputs.material.absorption_mm, inputs.material.reduced_scattering_mm, refractive_index};
+  const optics::Coefficients& material = inputs.material;
   const auto stage = [&](std::string_view name, bool stale, auto&& work) {
     if (stale) {
       clock.run(name, work);
@@ -44,8 +45,42 @@ void SurfaceLight::update(const Inputs& inputs, StageClock& clock) {
   if (material_reads_.renew(material)) integral_->set_material(inputs.material);
   stage("gather", gather_reads_.renew({placed, irradiance_generation_, material, inputs.quality}), [&] {
     integral_->gather(inputs.quality, radiosity_);
+    ++gather_generation_;
     ++generation_;
   });
+  correct_slabs_of(inputs, clock);
+}
+
+void SurfaceLight::correct_slabs_of(const Inputs& inputs, StageClock& clock) {
+  const bool stale = slab_reads_.renew({gather_generation_, inputs.material, inputs.slab_correction});
+  if (!inputs.slab_correction) {
+    if (corrects_) ++generation_;
+    corrects_ = false;
+    return;
+  }
+  corrects_ = true;
+  if (!stale) {
+    clock.sleep("slab");
+    return;
+  }
+  clock.run("slab", [&] {
+    const geometry::PlacedShape& shape = inputs.mesh.shape();
+    const std::vector<glm::uvec3>& triangles = inputs.mesh.topology()->triangles;
+    if (opposite_reads_.renew(inputs.mesh.generation())) {
+      if (thickness_ == nullptr) thickness_ = std::make_unique<ThicknessField>();
+      thickness_->update(triangles, shape);
+      opposites_ = thickness_->find(shape.positions_mm, shape.normals);
+    }
+    if (gain_reads_.renew(inputs.material)) gains_.emplace(inputs.material);
+    corrected_.resize(radiosity_.size());
+    correct_slabs(*gains_, opposites_, triangles, radiosity_, corrected_);
+    ++generation_;
+  });
+}
+
+size_t SurfaceLight::bytes() const {
+  const size_t slabs = thickness_ == nullptr ? 0 : thickness_->bytes() + opposites_.size() * sizeof(OppositePoint);
+  return (integral_ == nullptr ? 0 : integral_->bytes()) + slabs;
 }
 
 }  // namespace diaphane::render

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -10,11 +11,13 @@
 #include "render/irradiance.h"
 #include "render/memo.h"
 #include "render/refined_mesh.h"
+#include "render/slab_correction.h"
 #include "render/stage_clock.h"
+#include "render/thickness.h"
 
 namespace diaphane::render {
 
-/// Light on one mesh. Stages: normals, refit, irradiance, flux, gather; each sleeps while what it reads is the same.
+/// Light on one mesh. Stages: normals, refit, irradiance, flux, gather, slab (where asked for); each sleeps while what it reads is the same.
 /// One thread calls; work is spread over all cores. The same bytes on any number of threads.
 class SurfaceLight {
  public:
@@ -25,36 +28,46 @@ class SurfaceLight {
     diffusion::Quality quality;
     ShadowScene* shadows;         ///< null: unshadowed
     uint64_t shadows_generation;  ///< of what casts them; 0 without
+    bool slab_correction = false;
   };
 
   void update(const Inputs& inputs, StageClock& clock);
 
   /// B, RGB, W·mm⁻², a value a vertex. Valid until the next update.
-  std::span<const glm::vec3> radiosity() const { return radiosity_; }
+  std::span<const glm::vec3> radiosity() const { return corrects_ ? corrected_ : radiosity_; }
   /// E of the last update, at triangles and vertices.
   const SurfaceIrradiance& irradiance() const { return irradiance_.result(); }
   /// Grows whenever irradiance changes.
   uint64_t irradiance_generation() const { return irradiance_generation_; }
-  /// Memory that the integral holds.
-  size_t bytes() const { return integral_ == nullptr ? 0 : integral_->bytes(); }
+  /// Memory that the integral and the slabs' rays hold.
+  size_t bytes() const;
   /// Grows whenever radiosity changes.
   uint64_t generation() const { return generation_; }
 
  private:
-  using Materials = std::tuple<glm::vec3, glm::vec3, float>;
-
   std::unique_ptr<diffusion::DipoleIntegral> integral_;
   IrradianceStage irradiance_;
   std::vector<glm::vec3> radiosity_;
+  void correct_slabs_of(const Inputs& inputs, StageClock& clock);
+
+  bool corrects_ = false;
+  std::vector<glm::vec3> corrected_;
+  std::unique_ptr<ThicknessField> thickness_;
+  std::vector<OppositePoint> opposites_;
+  std::optional<SlabGains> gains_;
   uint64_t irradiance_generation_ = 0;
   uint64_t generation_ = 0;
+  uint64_t gather_generation_ = 0;
 
   // What each stage reads, in the order in which they run.
   Memo<uint64_t> refit_reads_;                                                          // shape
   Memo<std::tuple<uint64_t, std::vector<LightStorage>, float, uint64_t>> light_reads_;  // shape, lights, η, shadows
   Memo<std::tuple<uint64_t, uint64_t>> flux_reads_;                                     // shape, irradiance
-  Memo<Materials> material_reads_;
-  Memo<std::tuple<uint64_t, uint64_t, Materials, diffusion::Quality>>
+  Memo<optics::Coefficients> material_reads_;
+  Memo<uint64_t> opposite_reads_;                                            // shape
+  Memo<optics::Coefficients> gain_reads_;
+  Memo<std::tuple<uint64_t, optics::Coefficients, bool>> slab_reads_;  // gathered radiosity, material, asked for
+  Memo<std::tuple<uint64_t, uint64_t, optics::Coefficients, diffusion::Quality>>
       gather_reads_;  // shape, irradiance, material, quality
 };
 

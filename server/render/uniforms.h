@@ -6,6 +6,7 @@
 #include "glm/mat4x4.hpp"
 #include "glm/vec4.hpp"
 #include "optics/dipole.h"
+#include "optics/profile.h"
 
 namespace diaphane::render {
 

@@ -29,9 +29,15 @@ struct ScenePatch {
   std::optional<double> millimetres_per_unit;
 };
 
-struct MaterialModel {
-  std::string preset;  ///< empty: free coefficients
-  optics::Coefficients coefficients;
+struct NewMaterial {
+  optics::MaterialForm form;
+  optics::Profile profile = optics::Profile::kDipole;
+};
+
+/// What is given replaces what was there.
+struct MaterialPatch {
+  std::optional<optics::MaterialForm> form;
+  std::optional<optics::Profile> profile;
 };
 
 /// A whole light, or parts of one that is a point light.
@@ -88,9 +94,9 @@ class SceneStore {
   absl::StatusOr<SnapshotPtr> update_scene(const Reference& scene, const ScenePatch& patch);
   absl::Status delete_scene(const Reference& scene) ABSL_LOCKS_EXCLUDED(mutex_);
 
-  absl::StatusOr<Changed<Material>> create_material(const Reference& parent, const MaterialModel& model);
+  absl::StatusOr<Changed<Material>> create_material(const Reference& parent, const NewMaterial& material);
   absl::StatusOr<Material> material(const Reference& material) const;
-  absl::StatusOr<Changed<Material>> update_material(const Reference& material, const MaterialModel& model);
+  absl::StatusOr<Changed<Material>> update_material(const Reference& material, const MaterialPatch& patch);
   /// Returns the new scene revision. FAILED_PRECONDITION while a mesh uses it.
   absl::StatusOr<uint64_t> delete_material(const Reference& material);
 

@@ -15,10 +15,18 @@ absl::Status apply(const LightPatch& patch, LightKind& light) {
   return absl::OkStatus();
 }
 
+void set_form(Material* material, const optics::MaterialForm& form, optics::Profile profile) {
+  optics::ResolvedMaterial resolved = optics::resolve(form, profile);
+  material->form = form;
+  material->coefficients = resolved.coefficients;
+  material->warnings = std::move(resolved.warnings);
+}
+
 }  // namespace
 
-absl::StatusOr<Changed<Material>> SceneStore::create_material(const Reference& parent, const MaterialModel& model) {
-  Material created{{}, model.preset, model.coefficients};
+absl::StatusOr<Changed<Material>> SceneStore::create_material(const Reference& parent, const NewMaterial& material) {
+  Material created;
+  set_form(&created, material.form, material.profile);
   const auto scene = mutate(parent, [&](SceneSnapshot& draft) {
     absl::Status room = check_room_for_one(draft.materials, Collection::kMaterials, limits_.max_materials_per_scene);
     if (!room.ok()) return room;
@@ -38,13 +46,12 @@ absl::StatusOr<Material> SceneStore::material(const Reference& material) const {
   return *found;
 }
 
-absl::StatusOr<Changed<Material>> SceneStore::update_material(const Reference& material, const MaterialModel& model) {
+absl::StatusOr<Changed<Material>> SceneStore::update_material(const Reference& material, const MaterialPatch& patch) {
   Changed<Material> changed;
   const auto scene = mutate_parent(material, Collection::kMaterials, [&](SceneSnapshot& draft) {
     const auto found = find_child(draft.materials, material.name);
     if (found == draft.materials.end()) return not_found(material, "material");
-    found->preset = model.preset;
-    found->coefficients = model.coefficients;
+    set_form(&*found, patch.form.value_or(found->form), patch.profile.value_or(found->coefficients.profile));
     changed = {*found, draft.revision};
     return absl::OkStatus();
   });

@@ -11,14 +11,15 @@
 #include "geometry/topology.h"
 #include "glm/mat4x4.hpp"
 #include "glm/vec3.hpp"
-#include "optics/dipole.h"
+#include "optics/material.h"
 
 namespace diaphane::scene {
 
 struct Material {
-  std::string name;    ///< scenes/{scene}/materials/{material}
-  std::string preset;  ///< empty: free coefficients
-  optics::Coefficients coefficients;
+  std::string name;  ///< scenes/{scene}/materials/{material}
+  optics::MaterialForm form;
+  optics::Coefficients coefficients;  ///< what the form comes to, with the profile that was asked for
+  std::vector<std::string> warnings{};  ///< what is doubtful about them, a sentence each
 };
 
 /// Shines in all directions; irradiance falls with the square of the distance in millimetres.

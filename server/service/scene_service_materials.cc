@@ -7,9 +7,9 @@ namespace diaphane::service {
 SceneService::Unary* SceneService::CreateMaterial(Context* context, const v1::CreateMaterialRequest* request,
                                                   v1::MaterialResponse* response) {
   const auto apply = [&](v1::MaterialResponse& message) -> absl::Status {
-    const auto model = from_proto(request->material());
-    if (!model.ok()) return model.status();
-    return fill(store_.create_material({"parent", request->parent()}, *model), message);
+    const auto material = from_proto(request->material());
+    if (!material.ok()) return material.status();
+    return fill(store_.create_material({"parent", request->parent()}, *material), message);
   };
   return answer(context, apply_once(replies_, "CreateMaterial", *request, *response, apply));
 }
@@ -30,10 +30,9 @@ SceneService::Unary* SceneService::ListMaterials(Context* context, const v1::Lis
 SceneService::Unary* SceneService::UpdateMaterial(Context* context, const v1::UpdateMaterialRequest* request,
                                                   v1::MaterialResponse* response) {
   const auto apply = [&](v1::MaterialResponse& message) -> absl::Status {
-    if (absl::Status known = check_material_mask(request->update_mask()); !known.ok()) return known;
-    const auto model = from_proto(request->material());
-    if (!model.ok()) return model.status();
-    return fill(store_.update_material({"material.name", request->material().name()}, *model), message);
+    const auto patch = from_proto(*request);
+    if (!patch.ok()) return patch.status();
+    return fill(store_.update_material({"material.name", request->material().name()}, *patch), message);
   };
   return answer(context, apply_once(replies_, "UpdateMaterial", *request, *response, apply));
 }

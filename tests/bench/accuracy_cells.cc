@@ -21,7 +21,7 @@ using testing::Mesh;
 float smallest(const glm::vec3& v) { return std::min({v.x, v.y, v.z}); }
 
 std::vector<glm::vec3> truth_of(const testing::Cell& cell, const std::vector<glm::vec3>& points_mm,
-                                const AccuracySettings& settings, const char* kind) {
+                                const std::vector<glm::vec3>& normals, const AccuracySettings& settings, const char* kind) {
   const std::string path = settings.cache + "/" + cell.mesh_name + "." + cell.material_name + "." + cell.light_name +
                            "." + kind + std::to_string(points_mm.size());
   std::vector<glm::vec3> truth(points_mm.size());
@@ -30,7 +30,7 @@ std::vector<glm::vec3> truth_of(const testing::Cell& cell, const std::vector<glm
     std::ifstream file(path, std::ios::binary);
     if (file && file.read(reinterpret_cast<char*>(truth.data()), bytes)) return truth;
   }
-  truth = testing::true_radiosity(cell.mesh, cell.material, cell.irradiance, points_mm);
+  truth = testing::true_radiosity(cell.mesh, cell.material, cell.irradiance, points_mm, normals);
   if (!settings.cache.empty())
     std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(truth.data()), bytes);
   return truth;
@@ -91,7 +91,7 @@ std::vector<Pixel> choose_pixels(const std::vector<testing::Sights>& views, size
 }  // namespace
 
 Samples measure_integral(const testing::Cell& cell, const AccuracySettings& settings, Spacing& spacing) {
-  const float z = smallest(diffusion::smooth_distance_mm(optics::make_dipole(cell.material)));
+  const float z = smallest(diffusion::smooth_distance_mm(optics::make_profile(cell.material)));
   const Mesh fine = settings.spacings.size() == 2
                         ? subdivided(cell.mesh, settings.spacings[0] * z, settings.spacings[1] * z)
                         : testing::as_served(cell.mesh, cell.material, settings.quality);
@@ -104,17 +104,19 @@ Samples measure_integral(const testing::Cell& cell, const AccuracySettings& sett
   spacing = spacing_of(integral.topology(), fine, z);
 
   Samples samples;
+  std::vector<glm::vec3> shading_normals;
   const testing::MeshRays rays(fine);
   for (const testing::SurfacePoint& point : testing::random_points(cell.mesh, settings.points, 1)) {
     const glm::uvec3& t = cell.mesh.triangles[point.triangle];
     const std::vector<glm::vec3>& p = cell.mesh.positions_mm;
     samples.at_mm.push_back(testing::interpolate(cell.mesh, p, point));
     samples.normals.push_back(glm::normalize(glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x])));
+    shading_normals.push_back(glm::normalize(testing::interpolate(cell.mesh, cell.mesh.normals, point)));
     const auto found = rays.locate(samples.at_mm.back(), samples.normals.back());
     if (!found) throw std::runtime_error("a point of the surface was not found on the finer surface");
     samples.values.push_back(testing::interpolate(fine, radiosity, *found));
   }
-  samples.truth = truth_of(cell, samples.at_mm, settings, "points");
+  samples.truth = truth_of(cell, samples.at_mm, shading_normals, settings, "points");
   return samples;
 }
 
@@ -136,16 +138,18 @@ PixelSamples measure_paper(const testing::Cell& cell, const AccuracySettings& se
         renderer, testing::unshadowed_request(scene, view, render::Technique::kIntegral, settings.quality)));
   }
   PixelSamples samples;
+  std::vector<glm::vec3> normals;
   for (const Pixel& pixel : choose_pixels(sights, settings.points)) {
     const testing::Sight& sight = *sights[pixel.view].of_pixel[pixel.index];
     const float leaving =
         std::numbers::pi_v<float> / optics::fresnel_transmittance(cell.material.refractive_index, sight.cosine);
     samples.paper.at_mm.push_back(sight.position_mm);
+    normals.push_back(sight.normal);
     samples.paper.values.push_back(leaving * paper[pixel.view][pixel.index]);
     samples.integral.values.push_back(leaving * integral[pixel.view][pixel.index]);
   }
   samples.integral.at_mm = samples.paper.at_mm;
-  samples.paper.truth = samples.integral.truth = truth_of(cell, samples.paper.at_mm, settings, "pixels");
+  samples.paper.truth = samples.integral.truth = truth_of(cell, samples.paper.at_mm, normals, settings, "pixels");
   return samples;
 }
 

@@ -63,14 +63,15 @@ std::vector<size_t> choose_pixels(const testing::Sights& largest, size_t count) 
 
 /// B of brute force; kept in `path` from run to run where that is not empty.
 std::vector<glm::vec3> truth_of(const testing::Cell& cell, const testing::Mesh& pose,
-                                const std::vector<glm::vec3>& points_mm, const std::string& path) {
+                                const std::vector<glm::vec3>& points_mm, const std::vector<glm::vec3>& normals,
+                                const std::string& path) {
   std::vector<glm::vec3> truth(points_mm.size());
   const auto bytes = static_cast<std::streamsize>(truth.size() * sizeof(glm::vec3));
   if (!path.empty()) {
     std::ifstream file(path, std::ios::binary);
     if (file && file.read(reinterpret_cast<char*>(truth.data()), bytes)) return truth;
   }
-  truth = testing::true_radiosity(pose, cell.material, cell.irradiance, points_mm);
+  truth = testing::true_radiosity(pose, cell.material, cell.irradiance, points_mm, normals);
   if (!path.empty()) std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(truth.data()), bytes);
   return truth;
 }
@@ -79,7 +80,7 @@ Frame measure(const testing::Cell& cell, const testing::Mesh& pose, const testin
               const std::vector<glm::vec3>& picture, const std::vector<size_t>& pixels, const std::string& path) {
   Frame frame;
   std::vector<size_t> slots;
-  std::vector<glm::vec3> points_mm;
+  std::vector<glm::vec3> points_mm, normals;
   frame.integral.resize(pixels.size());
   frame.reference.resize(pixels.size());
   for (size_t k = 0; k < pixels.size(); ++k) {
@@ -87,9 +88,10 @@ Frame measure(const testing::Cell& cell, const testing::Mesh& pose, const testin
     if (!frame.inside.back()) continue;
     slots.push_back(k);
     points_mm.push_back(sights.of_pixel[pixels[k]]->position_mm);
+    normals.push_back(sights.of_pixel[pixels[k]]->normal);
     frame.integral[k] = picture[pixels[k]];
   }
-  const std::vector<glm::vec3> truth = truth_of(cell, pose, points_mm, path);
+  const std::vector<glm::vec3> truth = truth_of(cell, pose, points_mm, normals, path);
   for (size_t i = 0; i < slots.size(); ++i) {
     const float cosine = sights.of_pixel[pixels[slots[i]]]->cosine;
     frame.reference[slots[i]] =

@@ -31,6 +31,7 @@ struct Settings {
   std::vector<int> threads = {1, 2};  ///< several: a process for each
   std::vector<std::string> simd = {""};
   std::vector<std::string> shadows = {"off", "on"};
+  std::vector<std::string> extras = {"-"};
   std::string material = "marble";
   std::string quality = "fine";
   int frames = 21;
@@ -44,7 +45,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kColumns = {
     {"normals", {"place", "refine", "normals"}},
     {"E + flux", {"shadow", "irradiance", "flux"}},
     {"refit", {"refit"}},
-    {"gather", {"gather"}},
+    {"gather", {"gather", "slab"}},
     {"draw", {"upload", "draw", "read_back"}}};
 
 using Times = std::map<std::string, std::vector<double>>;
@@ -70,13 +71,20 @@ void render(render::FrameRenderer& renderer, const render::FrameRequest& request
   (*times)["update"].push_back(update);
 }
 
-Times measure(const testing::Mesh& mesh, const Settings& settings, bool shadows, render::FrameRenderer& renderer) {
-  const auto scene = bench::make_scene(mesh, settings.material, bench::lights(settings.coloured));
+/// What a row has beside the plain frame: nothing (-), the slab correction, or a profile.
+const std::vector<std::string> kExtras = {"-", "slab", "better-dipole", "normalized-diffusion"};
+
+Times measure(const testing::Mesh& mesh, const Settings& settings, bool shadows, const std::string& extra,
+              render::FrameRenderer& renderer) {
+  const bool profile = extra != "-" && extra != "slab";
+  const auto scene = bench::make_scene(mesh, profile ? settings.material + "+" + extra : settings.material,
+                                       bench::lights(settings.coloured));
   bench::LambertFrame lambert(mesh.triangles, settings.size_px);
   render::FrameRequest request;
   request.width_px = request.height_px = settings.size_px;
   request.settings.quality = bench::quality_of(settings.quality);
   request.settings.shadows = shadows;
+  request.settings.slab_correction = extra == "slab";
   Times times;
   for (int i = -3; i < settings.frames; ++i) {
     Times* booked = i < 0 ? nullptr : &times;
@@ -106,15 +114,16 @@ std::vector<std::string> column_names() {
 }
 
 nlohmann::json measure_row(const testing::Mesh& mesh, const std::string& file, const Settings& settings,
-                           const std::string& shadows, render::FrameRenderer& renderer) {
-  const Times times = measure(mesh, settings, shadows == "on", renderer);
+                           const std::string& shadows, const std::string& extra, render::FrameRenderer& renderer) {
+  const Times times = measure(mesh, settings, shadows == "on", extra, renderer);
   nlohmann::json row = {{"mesh", file},
                         {"triangles", mesh.triangles.size()},
                         {"shadows", shadows},
+                        {"extra", extra},
                         {"simd_level", diffusion::simd_level()},
                         {"threads", settings.threads.front()}};
-  std::printf("%-14.14s %7zu %-5s %-3s %2d |", file.c_str(), mesh.triangles.size(), diffusion::simd_level().c_str(),
-              shadows.c_str(), settings.threads.front());
+  std::printf("%-14.14s %7zu %-5s %-3s %-6.6s %2d |", file.c_str(), mesh.triangles.size(),
+              diffusion::simd_level().c_str(), shadows.c_str(), extra.c_str(), settings.threads.front());
   for (const std::string& name : column_names()) {
     const double ms = bench::median(times.at(name));
     row["milliseconds"][name] = ms;
@@ -154,7 +163,9 @@ nlohmann::json measure_rows(const Settings& settings) {
         continue;
       }
       for (const std::string& shadows : settings.shadows) {
-        rows.push_back(measure_row(*mesh, file, settings, shadows, **renderer));
+        for (const std::string& extra : settings.extras) {
+          rows.push_back(measure_row(*mesh, file, settings, shadows, extra, **renderer));
+        }
       }
     }
   }
@@ -176,7 +187,7 @@ int run_process_of(int threads, std::vector<std::string> arguments, const std::s
 }
 
 int run_all(const Settings& settings, const std::vector<std::string>& arguments) {
-  std::printf("%-14s %7s %-5s %-3s %2s |", "mesh", "tris", "simd", "sh", "th");
+  std::printf("%-14s %7s %-5s %-3s %-6s %2s |", "mesh", "tris", "simd", "sh", "extra", "th");
   for (const std::string& name : column_names()) std::printf(" %8.8s", name.c_str());
   std::printf(" | update, deforming, camera-only over Lambert; ms, medians of %d frames, %s, %s, %u²\n",
               settings.frames, settings.material.c_str(), settings.quality.c_str(), settings.size_px);
@@ -209,6 +220,8 @@ int main(int argc, char** argv) {
   auto* threads = list("--threads", settings.threads, "this many, in this process alone; default: one and two");
   list("--simd", settings.simd, "levels to compare, such as AVX2,SSE4; default the best");
   list("--shadows", settings.shadows, "off,on")->check(CLI::IsMember({"on", "off"}));
+  list("--extras", settings.extras, "rows: - (the plain frame), slab, better-dipole, normalized-diffusion")
+      ->check(CLI::IsMember(diaphane::kExtras));
   app.add_option("--material", settings.material, "preset");
   app.add_option("--quality", settings.quality)->check(CLI::IsMember({"draft", "normal", "fine"}));
   app.add_option("--frames", settings.frames)->check(CLI::Range(1, 10000));

@@ -147,7 +147,7 @@ class Places {
 
  private:
   static float smooth_mm(const optics::Coefficients& material) {
-    const glm::vec3 z = diffusion::smooth_distance_mm(optics::make_dipole(material));
+    const glm::vec3 z = diffusion::smooth_distance_mm(optics::make_profile(material));
     return std::min({z.x, z.y, z.z});
   }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "optics/presets.h"
+#include "tests/support/cells.h"
 
 namespace diaphane::bench {
 
@@ -24,7 +24,8 @@ std::shared_ptr<scene::SceneSnapshot> make_scene(const testing::Mesh& mesh, cons
                                                  std::vector<scene::Light> lights) {
   auto scene = std::make_shared<scene::SceneSnapshot>();
   scene->name = "scenes/bench";
-  scene->materials.push_back({"material", preset, optics::find_preset(preset)->coefficients});
+  const optics::Coefficients material = testing::cell_material(preset);
+  scene->materials.push_back({"material", material, material});
   auto body = std::make_shared<scene::Mesh>();
   body->name = "mesh";
   body->material = "material";

@@ -82,15 +82,13 @@ void convert(const v1::UpdateLightRequest& request, std::string_view) {
 void convert(const v1::CreateMaterialRequest& request, std::string_view) {
   const auto material = service::from_proto(request.material());
   if (!is_accepted(material)) return;
-  const optics::Coefficients& c = material->coefficients;
+  const optics::Coefficients c = optics::resolve(material->form, material->profile).coefficients;
   require(is_finite(c.absorption_mm) && is_finite(c.reduced_scattering_mm), "finite coefficients");
   require(c.refractive_index >= 1 && c.refractive_index <= 3, "an index of 1..3");
 }
 
 void convert(const v1::UpdateMaterialRequest& request, std::string_view) {
-  if (is_accepted(service::check_material_mask(request.update_mask()))) {
-    is_accepted(service::from_proto(request.material()));
-  }
+  is_accepted(service::from_proto(request));
 }
 
 void convert(const v1::CreateSceneRequest& request, std::string_view) {

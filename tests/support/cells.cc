@@ -39,25 +39,43 @@ std::vector<PointLight> cell_lights(const std::string& name, float extent_mm) {
   return lights;
 }
 
+optics::Coefficients cell_material(const std::string& name) {
+  const size_t plus = name.find('+');
+  const auto preset = optics::find_preset(name.substr(0, plus));
+  if (!preset) throw std::runtime_error("no material is called " + name);
+  optics::Coefficients material = preset->coefficients;
+  if (plus == std::string::npos) return material;
+  const std::string profile = name.substr(plus + 1);
+  if (profile == "better-dipole") {
+    material.profile = optics::Profile::kBetterDipole;
+  } else if (profile == "normalized-diffusion") {
+    material.profile = optics::Profile::kNormalizedDiffusion;
+  } else {
+    throw std::runtime_error("no profile is called " + profile);
+  }
+  return material;
+}
+
 Cell make_cell(const std::string& mesh, const std::string& material, const std::string& light, float extent_mm) {
-  const auto preset = optics::find_preset(material);
-  if (!preset) throw std::runtime_error("no material is called " + material);
-  Cell cell{mesh, material, light, cell_mesh(mesh, extent_mm), preset->coefficients, cell_lights(light, extent_mm), {}};
+  Cell cell{mesh, material, light, cell_mesh(mesh, extent_mm), cell_material(material),
+            cell_lights(light, extent_mm), {}};
   cell.irradiance = irradiance_of(cell.lights, cell.material.refractive_index);
   return cell;
 }
 
 std::vector<glm::vec3> true_radiosity(const Mesh& mesh, const optics::Coefficients& material,
                                       const diffusion::IrradianceAt& irradiance,
-                                      const std::vector<glm::vec3>& points_mm) {
-  const optics::Dipole dipole = optics::make_dipole(material);
-  const glm::vec3& l = dipole.mean_free_path_mm;
+                                      const std::vector<glm::vec3>& points_mm, const std::vector<glm::vec3>& normals) {
+  const diffusion::ReferenceKernel kernel = diffusion::reference_kernel(optics::make_profile(material));
   const diffusion::SurfelOptions sampling{.splits = mesh.triangles.size() > 100000 ? 1u : 2u,
-                                          .spacing_mm = 0.5f * std::min({l.x, l.y, l.z}),
+                                          .spacing_mm = kernel.spacing_mm,
                                           .largest_splits = 200};
   const diffusion::Surfels surfels =
       diffusion::sample_surface(mesh.triangles, mesh.positions_mm, mesh.normals, irradiance, sampling);
-  return *diffusion::reference_radiosity(dipole, surfels, points_mm);
+  std::vector<glm::vec3> radiosity = *diffusion::reference_radiosity(kernel.spread, surfels, points_mm);
+  if (kernel.local == glm::vec3(0)) return radiosity;
+  for (size_t i = 0; i < radiosity.size(); ++i) radiosity[i] += kernel.local * irradiance(points_mm[i], normals[i]);
+  return radiosity;
 }
 
 }  // namespace diaphane::testing

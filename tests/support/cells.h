@@ -22,6 +22,10 @@ Mesh cell_mesh(const std::string& name, float extent_mm);
 /// Lights of kCellLights for a body of that extent. Throws std::runtime_error where there are none of that name.
 std::vector<PointLight> cell_lights(const std::string& name, float extent_mm);
 
+/// A preset, or preset+profile, profile one of better-dipole and normalized-diffusion. Throws std::runtime_error where
+/// there is none of that name.
+optics::Coefficients cell_material(const std::string& name);
+
 /// A cell of the matrix, ready to be measured.
 struct Cell {
   std::string mesh_name, material_name, light_name;
@@ -32,9 +36,10 @@ struct Cell {
 };
 Cell make_cell(const std::string& mesh, const std::string& material, const std::string& light, float extent_mm);
 
-/// B of brute force at points of a surface, W·mm⁻², over surfels of half the shortest mean free path or finer.
+/// B of brute force at points of a surface with their normals, W·mm⁻², over surfels of half the shortest mean free path or finer.
 std::vector<glm::vec3> true_radiosity(const Mesh& mesh, const optics::Coefficients& material,
                                       const diffusion::IrradianceAt& irradiance,
-                                      const std::vector<glm::vec3>& points_mm);
+                                      const std::vector<glm::vec3>& points_mm,
+                                      const std::vector<glm::vec3>& normals);
 
 }  // namespace diaphane::testing

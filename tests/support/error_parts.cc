@@ -50,13 +50,18 @@ std::vector<ErrorParts> error_parts(const Cell& cell, diffusion::Quality quality
   const MeshRays rays(fine);
   std::vector<SurfacePoint> found;
   std::vector<glm::vec3> receivers(points_mm.begin(), points_mm.end());
+  std::vector<glm::vec3> receiver_normals(normals.begin(), normals.end());
   for (size_t i = 0; i < points_mm.size(); ++i) {
     const auto point = rays.locate(points_mm[i], normals[i]);
     if (!point) throw std::runtime_error("a point of the surface was not found on the finer surface");
     found.push_back(*point);
-    for (int k = 0; k < 3; ++k) receivers.push_back(fine.positions_mm[fine.triangles[point->triangle][k]]);
+    for (int k = 0; k < 3; ++k) {
+      const uint32_t vertex = fine.triangles[point->triangle][k];
+      receivers.push_back(fine.positions_mm[vertex]);
+      receiver_normals.push_back(fine.normals[vertex]);
+    }
   }
-  const auto truth = true_radiosity(cell.mesh, cell.material, cell.irradiance, receivers);
+  const auto truth = true_radiosity(cell.mesh, cell.material, cell.irradiance, receivers, receiver_normals);
   std::vector<ErrorParts> parts;
   for (size_t i = 0; i < found.size(); ++i) {
     glm::vec3 exact(0);

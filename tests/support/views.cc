@@ -69,7 +69,7 @@ std::shared_ptr<scene::SceneSnapshot> make_scene(const Mesh& mesh, const optics:
   auto scene = std::make_shared<scene::SceneSnapshot>();
   scene->name = "scenes/bench";
   scene->revision = 1;
-  scene->materials.push_back({"scenes/bench/materials/m", "", material});
+  scene->materials.push_back({"scenes/bench/materials/m", material, material});
   auto body = std::make_shared<scene::Mesh>();
   body->name = "scenes/bench/meshes/a";
   body->material = scene->materials.front().name;

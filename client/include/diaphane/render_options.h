@@ -79,6 +79,7 @@ struct RenderSettings {
   Technique technique = Technique::kServerDefault;
   Quality quality = Quality::kNormal;  ///< of the integral
   Shadows shadows = Shadows::kDefault;
+  bool slab_correction = false;  ///< of the integral and the reference: thin parts give back no more than they got
   PaperSettings paper;
   float exposure_ev = 0;       ///< stops, -32..32; multiplies radiance by 2^exposure_ev before sRGB, never in EXR
   bool auto_exposure = false;  ///< finds the exposure by the frame, and adds exposure_ev

@@ -48,7 +48,8 @@ struct SceneInfo {
 struct MaterialInfo {
   MaterialHandle handle;
   Material material;
-  Coefficients resolved;  ///< the coefficients in force
+  Coefficients resolved;              ///< the coefficients in force
+  std::vector<std::string> warnings;  ///< what is doubtful about them, a sentence each
 };
 
 struct LightInfo {
@@ -94,6 +95,8 @@ class Scene {
   const std::string& name() const;
 
   absl::StatusOr<MaterialHandle> add_material(const Material& material) const;
+  /// The material as the server took it: the coefficients in force, and warnings of what is doubtful about them.
+  absl::StatusOr<MaterialInfo> material(const MaterialHandle& handle) const;
   absl::StatusOr<uint64_t> update_material(const MaterialHandle& handle, const Material& material) const;
   /// Errors: FAILED_PRECONDITION while a mesh uses it.
   absl::StatusOr<uint64_t> remove_material(const MaterialHandle& handle) const;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <variant>
 
 namespace diaphane {
@@ -52,9 +53,43 @@ struct Coefficients {
 /// The preset that is used where no material was asked for.
 inline constexpr char kDefaultPreset[] = "marble";
 
-/// What a body is made of: the name of a preset (Client::material_presets), or free coefficients.
+/// An artist's form: the coefficients are those whose plane under even light has this colour.
+struct DiffuseColor {
+  Rgb color{0.8f, 0.8f, 0.8f};     ///< diffuse reflectance, each 0..0.999
+  Rgb mean_free_path_mm{1, 1, 1};  ///< l = 1/(σa + σ's) in mm, each 0.001..1000
+  float refractive_index = 1.3f;   ///< η, 1..3
+};
+
+/// glTF's KHR_materials_volume, and of the draft scattering extensions the multiple-scattering colour.
+struct Volume {
+  Rgb attenuation_color{0.5f, 0.5f, 0.5f};   ///< what is left after the distance, each above 0, up to 1; not all 1
+  float attenuation_distance_mm = 1;         ///< 1e-6..1e6
+  Rgb multiscatter_color{0.8f, 0.8f, 0.8f};  ///< each 0..0.999; not all 0
+  float scatter_anisotropy = 0;              ///< g, the mean cosine of scattering, -0.99..0.99
+  float refractive_index = 1.5f;             ///< η, 1..3
+};
+
+/// How light spreads below the surface, for Technique::kIntegral and kReference; the others always take the dipole.
+/// Values are those of the contract.
+enum class Profile {
+  kDipole = 1,               ///< the classical dipole (Jensen et al. 2001)
+  kBetterDipole = 2,         ///< the better dipole (d'Eon 2012)
+  kNormalizedDiffusion = 3,  ///< normalized diffusion (Christensen and Burley 2015)
+};
+
+struct NamedProfile {
+  std::string_view name;
+  Profile profile;
+};
+inline constexpr NamedProfile kProfiles[] = {{"dipole", Profile::kDipole},
+                                             {"better-dipole", Profile::kBetterDipole},
+                                             {"normalized-diffusion", Profile::kNormalizedDiffusion}};
+
+/// What a body is made of: the name of a preset (Client::material_presets), free coefficients, or another form that the
+/// server turns into them.
 struct Material {
-  std::variant<std::string, Coefficients> model = std::string(kDefaultPreset);
+  std::variant<std::string, Coefficients, DiffuseColor, Volume> model = std::string(kDefaultPreset);
+  Profile profile = Profile::kDipole;
 };
 
 /// A material that the server knows by name.

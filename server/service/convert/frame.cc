@@ -156,6 +156,7 @@ absl::StatusOr<render::RenderSettings> from_proto(const v1::RenderSettings& mess
   settings.quality = *quality;
   settings.shadows = *shadows;
   settings.paper = *paper;
+  settings.slab_correction = message.slab_correction();
   return settings;
 }
 

@@ -77,7 +77,7 @@ TEST_F(Gallery, ShowsEveryFigureAsThePaperSaysOfIt) {
   make();
   if (IsSkipped() || HasFatalFailure()) return;
   const std::string page = read_file(folder_ / "page" / "index.html");
-  for (const char* figure : {"fig6", "fig7", "fig8", "fig9", "fig10", "materials", "techniques"}) {
+  for (const char* figure : {"fig6", "fig7", "fig8", "fig9", "fig10", "materials", "colors", "techniques"}) {
     EXPECT_THAT(page, HasSubstr(std::string("<section id=\"") + figure + "\">"));
   }
   EXPECT_THAT(page, testing::Not(HasSubstr("http")));

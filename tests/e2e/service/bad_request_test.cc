@@ -218,7 +218,40 @@ TEST_F(BadRequestTest, RefusesMaterials) {
                           {"material.coefficients.refractive_index", "3.5", "1..3"});
   expect_material_refused([](auto& m) { m.set_preset("granite"); },
                           {"material.preset", "granite", "ListMaterialPresets"});
-  expect_material_refused([](auto& m) { m.clear_model(); }, {"material.model", "neither", "preset or coefficients"});
+  expect_material_refused([](auto& m) { m.clear_model(); }, {"material.model", "none", "preset, coefficients"});
+  const auto set_rgb = [](v1::Vec3* rgb, float r, float g, float b) {
+    rgb->set_x(r);
+    rgb->set_y(g);
+    rgb->set_z(b);
+  };
+  const auto with_color = [&](float green, float l, float index) {
+    return [&, green, l, index](auto& m) {
+      set_rgb(m.mutable_diffuse_color()->mutable_color(), 0.5f, green, 0.5f);
+      set_rgb(m.mutable_diffuse_color()->mutable_mean_free_path_mm(), 1, 1, l);
+      m.mutable_diffuse_color()->set_refractive_index(index);
+    };
+  };
+  expect_material_refused(with_color(0.9999f, 1, 0), {"material.diffuse_color.color.y", "0.9999", "0..0.999"});
+  expect_material_refused(with_color(kNan, 1, 0), {"material.diffuse_color.color.y", "nan", "0..0.999"});
+  expect_material_refused(with_color(0.5f, 0, 0),
+                          {"material.diffuse_color.mean_free_path_mm.z", "0", "0.001..1000"});
+  expect_material_refused(with_color(0.5f, 1, 0.5f), {"material.diffuse_color.refractive_index", "0.5", "1..3"});
+  const auto with_volume = [&](float attenuation, float distance, float scatter, float anisotropy) {
+    return [&, attenuation, distance, scatter, anisotropy](auto& m) {
+      set_rgb(m.mutable_volume()->mutable_attenuation_color(), attenuation, attenuation, attenuation);
+      set_rgb(m.mutable_volume()->mutable_multiscatter_color(), scatter, scatter, scatter);
+      m.mutable_volume()->set_attenuation_distance_mm(distance);
+      m.mutable_volume()->set_scatter_anisotropy(anisotropy);
+    };
+  };
+  expect_material_refused(with_volume(0, 1, 0.5f, 0), {"material.volume.attenuation_color.x", "0", "above 0, up to 1"});
+  expect_material_refused(with_volume(1, 1, 0.5f, 0), {"material.volume.attenuation_color", "1, 1, 1", "below 1"});
+  expect_material_refused(with_volume(0.5f, 0, 0.5f, 0),
+                          {"material.volume.attenuation_distance_mm", "0", "1e-06..1000000"});
+  expect_material_refused(with_volume(0.5f, 1, 0, 0), {"material.volume.multiscatter_color", "0, 0, 0", "above 0"});
+  expect_material_refused(with_volume(0.5f, 1, 0.5f, 1), {"material.volume.scatter_anisotropy", "1", "-0.99..0.99"});
+  expect_material_refused([](auto& m) { m.set_profile(static_cast<v1::Profile>(9)); },
+                          {"material.profile", "9", "a value of Profile"});
 }
 
 TEST_F(BadRequestTest, RefusesLights) {

@@ -83,6 +83,42 @@ TEST_F(ResourcesTest, ResolvesPresetsAndChangesMaterials) {
   EXPECT_EQ(response.scene_revision(), 3u);
 }
 
+TEST_F(ResourcesTest, ResolvesColoursAndWarnsOfThemInTheAnswer) {
+  v1::CreateMaterialRequest request;
+  request.set_parent(create_scene().name());
+  v1::DiffuseColor& color = *request.mutable_material()->mutable_diffuse_color();
+  color.mutable_color()->set_x(0.9f);
+  color.mutable_color()->set_y(0.9f);
+  color.mutable_color()->set_z(0.01f);
+  for (auto set : {&v1::Vec3::set_x, &v1::Vec3::set_y, &v1::Vec3::set_z}) {
+    (color.mutable_mean_free_path_mm()->*set)(0.5f);
+  }
+  v1::MaterialResponse created;
+  {
+    Context context;
+    ASSERT_TRUE(scenes_->CreateMaterial(&context, request, &created).ok());
+  }
+  const v1::Material& material = created.material();
+  EXPECT_TRUE(material.has_diffuse_color());
+  EXPECT_EQ(material.profile(), v1::PROFILE_DIPOLE);
+  const v1::Coefficients& resolved = material.resolved();
+  EXPECT_NEAR(resolved.absorption_mm().x() + resolved.reduced_scattering_mm().x(), 2, 1e-4);
+  ASSERT_EQ(material.warnings_size(), 1);
+  EXPECT_NE(material.warnings(0).find("blue scatters too little"), std::string::npos) << material.warnings(0);
+
+  // Only the profile changes; the coefficients follow, so that the colour stays.
+  v1::UpdateMaterialRequest update;
+  update.mutable_material()->set_name(material.name());
+  update.mutable_material()->set_profile(v1::PROFILE_BETTER_DIPOLE);
+  update.mutable_update_mask()->add_paths("profile");
+  Context context;
+  v1::MaterialResponse updated;
+  ASSERT_TRUE(scenes_->UpdateMaterial(&context, update, &updated).ok());
+  EXPECT_TRUE(updated.material().has_diffuse_color());
+  EXPECT_EQ(updated.material().profile(), v1::PROFILE_BETTER_DIPOLE);
+  EXPECT_NE(updated.material().resolved().absorption_mm().x(), resolved.absorption_mm().x());
+}
+
 TEST_F(ResourcesTest, ListsEveryPresetWithItsSource) {
   Context context;
   v1::ListMaterialPresetsResponse response;

@@ -7,6 +7,7 @@
 
 #include "glm/geometric.hpp"
 #include "glm/trigonometric.hpp"
+#include "optics/profile.h"
 #include "render/gl_renderer.h"
 #include "tests/gl/render/scenes.h"
 

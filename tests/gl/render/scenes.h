@@ -66,7 +66,7 @@ inline std::shared_ptr<scene::SceneSnapshot> make_scene(Triangles triangles, std
   scene->name = "scenes/test";
   scene->revision = 1;
   scene->materials.push_back(
-      {"scenes/test/materials/m", std::string(preset), optics::find_preset(preset)->coefficients});
+      {"scenes/test/materials/m", optics::PresetName{std::string(preset)}, optics::find_preset(preset)->coefficients});
   auto mesh = std::make_shared<scene::Mesh>();
   mesh->name = "scenes/test/meshes/a";
   mesh->material = scene->materials.front().name;

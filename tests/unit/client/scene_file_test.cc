@@ -119,7 +119,7 @@ TEST_F(SceneFileTest, RefusesMaterialsThatCannotBeMeant) {
   EXPECT_THAT(refusal(R"({"meshes": [{"file": "x.ply"}], "materials": [{"preset": "wax"}]})"),
               HasSubstr("materials[0].name"));
   EXPECT_THAT(refusal(R"({"meshes": [{"file": "x.ply"}], "materials": [{"name": "a"}]})"),
-              HasSubstr("preset or coefficients"));
+              HasSubstr("preset, coefficients"));
   EXPECT_THAT(refusal(R"({"meshes": [{"file": "x.ply"}],
                           "materials": [{"name": "a", "preset": "wax"}, {"name": "a", "preset": "wax"}]})"),
               HasSubstr("materials[1].name"));

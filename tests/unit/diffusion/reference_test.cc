@@ -54,7 +54,7 @@ class ReferencePoints : public ::testing::TestWithParam<const char*> {
       receivers.emplace_back(point["p"][0], point["p"][1], point["p"][2]);
       truth.emplace_back(point[field][0], point[field][1], point[field][2]);
     }
-    const auto radiosity = reference_radiosity(optics::make_dipole(material_), surfels, receivers);
+    const auto radiosity = reference_radiosity(optics::make_profile(material_), surfels, receivers);
     ASSERT_TRUE(radiosity.ok());
     const glm::vec3 error = testing::relative_rms(*radiosity, truth);
     RecordProperty("worst_channel_percent", std::to_string(100 * std::max({error.x, error.y, error.z})));
@@ -108,7 +108,7 @@ TEST(Surfels, SplitLongEdgesToTheSpacing) {
 }
 
 TEST(Reference, OneSurfelGivesTheDipoleItself) {
-  const optics::Dipole dipole = optics::make_dipole(optics::find_preset("skin1")->coefficients);
+  const optics::ReflectanceProfile dipole = optics::make_profile(optics::find_preset("skin1")->coefficients);
   Surfels one;
   one.positions_mm = {{1, 2, 3}};
   one.flux_w = {{2, 3, 5}};

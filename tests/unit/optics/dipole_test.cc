@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "optics/presets.h"
+#include "optics/profile.h"
 
 namespace diaphane::optics {
 namespace {

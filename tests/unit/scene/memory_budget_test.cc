@@ -34,7 +34,7 @@ TEST(MemoryBudget, GetsBackWhatAReservationLeaves) {
 TEST(MeshMemory, CountsForAsLongAsASnapshotKeepsTheMesh) {
   SceneStore store({});
   const std::string scene = (*store.create_scene({}))->name;
-  const std::string material = store.create_material({"parent", scene}, {"marble", {}})->value.name;
+  const std::string material = store.create_material({"parent", scene}, {optics::PresetName{"marble"}})->value.name;
   add_triangle(store, scene, material);
   EXPECT_EQ(store.mesh_bytes(), topology_bytes(kTriangleCounts) + shape_bytes(kTriangleCounts));
   SnapshotPtr kept = *store.scene({"name", scene});
@@ -49,7 +49,7 @@ TEST(MeshMemory, IsReservedForAnUploadAndGivenBack) {
   limits.max_mesh_bytes = upload_bytes(kTriangleCounts);
   SceneStore store(limits);
   const std::string scene = (*store.create_scene({}))->name;
-  const std::string material = store.create_material({"parent", scene}, {"marble", {}})->value.name;
+  const std::string material = store.create_material({"parent", scene}, {optics::PresetName{"marble"}})->value.name;
   const auto reserve = [&] {
     return store.reserve_mesh({"parent", scene}, {"mesh.material", material}, kTriangleCounts);
   };

@@ -20,7 +20,7 @@ class SceneStoreTest : public ::testing::Test {
  protected:
   std::string new_scene() { return (*store_.create_scene({"bust", 10.0}))->name; }
   std::string new_material(const std::string& scene) {
-    return store_.create_material({"parent", scene}, {"marble", {}})->value.name;
+    return store_.create_material({"parent", scene}, {optics::PresetName{"marble"}})->value.name;
   }
 
   SceneStore store_{{.max_scenes = 5}};
@@ -36,7 +36,7 @@ TEST_F(SceneStoreTest, NamesScenesBy128BitsThatDiffer) {
 TEST_F(SceneStoreTest, RaisesTheRevisionWithEveryMutation) {
   const std::string scene = new_scene();
   EXPECT_EQ((*store_.scene({"name", scene}))->revision, 1u);
-  EXPECT_EQ(store_.create_material({"parent", scene}, {"marble", {}})->scene_revision, 2u);
+  EXPECT_EQ(store_.create_material({"parent", scene}, {optics::PresetName{"marble"}})->scene_revision, 2u);
   const auto light = *store_.create_light({"parent", scene}, {});
   EXPECT_EQ(light.scene_revision, 3u);
   EXPECT_EQ(store_.update_light({"light.name", light.value.name}, {})->scene_revision, 4u);

@@ -1,0 +1,89 @@
+#include "render/slab_correction.h"
+
+#include <gtest/gtest.h>
+
+#include "glm/geometric.hpp"
+#include "optics/presets.h"
+#include "tests/support/lit_slab.h"
+#include "tests/support/meshes.h"
+#include "tests/support/random_walk.h"
+
+namespace diaphane::render {
+namespace {
+
+TEST(ThicknessField, IsTheDiameterOfATorussTube) {
+  const testing::Mesh torus = testing::make_torus(7, 2, 160, 64);
+  ThicknessField field;
+  field.update(torus.triangles, {.positions_mm = torus.positions_mm, .normals = torus.normals});
+  const auto opposites = field.find(torus.positions_mm, torus.normals);
+  for (size_t v = 0; v < opposites.size(); ++v) {
+    EXPECT_NEAR(opposites[v].thickness_mm, 4, 0.04) << v;
+    const glm::uvec3& t = torus.triangles[opposites[v].triangle];
+    const glm::vec3 there = opposites[v].weights.x * torus.positions_mm[t.x] +
+                            opposites[v].weights.y * torus.positions_mm[t.y] +
+                            opposites[v].weights.z * torus.positions_mm[t.z];
+    EXPECT_LT(glm::length(there - (torus.positions_mm[v] - 4.0f * torus.normals[v])), 0.05f) << v;
+  }
+}
+
+TEST(ThicknessField, FollowsTheMeshAndItsMirrorImage) {
+  testing::Mesh box = testing::make_box({4, 6, 8}, 2);
+  ThicknessField field;
+  geometry::PlacedShape shape{.positions_mm = box.positions_mm, .normals = box.normals};
+  field.update(box.triangles, shape);
+  EXPECT_NEAR(field.find(glm::vec3(2, 0.1f, 0.2f), {1, 0, 0}).thickness_mm, 4, 1e-4);
+  for (glm::vec3& p : shape.positions_mm) p.x *= -0.5f;
+  shape.flipped = true;
+  field.update(box.triangles, shape);
+  EXPECT_NEAR(field.find(glm::vec3(1, 0.1f, 0.2f), {1, 0, 0}).thickness_mm, 2, 1e-4);
+}
+
+TEST(ThicknessField, IsInfiniteWhereNothingLiesBehind) {
+  const testing::Mesh disc = testing::make_graded_disc(0.1f, 5, 16);
+  ThicknessField field;
+  field.update(disc.triangles, {.positions_mm = disc.positions_mm, .normals = disc.normals});
+  const OppositePoint opposite = field.find(disc.positions_mm[0], disc.normals[0]);
+  EXPECT_EQ(opposite.thickness_mm, std::numeric_limits<float>::infinity());
+  const optics::SlabGain gain = SlabGains(optics::find_preset("marble")->coefficients).at(opposite.thickness_mm);
+  EXPECT_EQ(gain.own, glm::vec3(1));
+  EXPECT_EQ(gain.opposite, glm::vec3(0));
+}
+
+TEST(SlabGains, AreThoseOfTheFormula) {
+  const optics::Coefficients material = optics::find_preset("skin1")->coefficients;
+  const SlabGains gains(material);
+  for (const float thickness : {0.05f, 0.4f, 1.1f, 7.0f, 90.0f}) {
+    const optics::SlabGain exact = optics::slab_gain(material, thickness), looked_up = gains.at(thickness);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(looked_up.own[c], exact.own[c], 1e-3f) << thickness;
+      EXPECT_NEAR(looked_up.opposite[c], exact.opposite[c], 1e-3f) << thickness;
+    }
+  }
+}
+
+TEST(SlabCorrection, GivesOnAMeshWhatARandomWalkDoesFromHalfAMeanFreePathUp) {
+  for (const optics::Profile profile :
+       {optics::Profile::kDipole, optics::Profile::kBetterDipole, optics::Profile::kNormalizedDiffusion}) {
+    // Of one mean free path a channel, so that one slab tells three albedos.
+    const optics::Coefficients material{.absorption_mm = {0.001f, 0.004f, 0.01f},
+                                        .reduced_scattering_mm = {0.999f, 0.996f, 0.99f},
+                                        .refractive_index = 1.3f,
+                                        .profile = profile};
+    for (const float thickness : {0.5f, 1.0f, 3.0f}) {
+      const testing::LitSlab slab = testing::light_slab(material, thickness);
+      for (int c = 0; c < 3; ++c) {
+        const auto walked =
+            testing::walk_slab(material.reduced_scattering_mm[c], material.refractive_index, thickness, 40000);
+        const double right = walked.reflected + walked.transmitted;
+        EXPECT_NEAR((slab.corrected.reflected[c] + slab.corrected.transmitted[c]) / right, 1, 0.05)
+            << "profile " << static_cast<int>(profile) << " thickness " << thickness << " channel " << c;
+        if (thickness <= 1) {
+          EXPECT_GT(slab.integral.reflected[c] + slab.integral.transmitted[c], 1.5 * right) << thickness;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace diaphane::render

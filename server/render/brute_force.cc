@@ -17,8 +17,9 @@ namespace diaphane::render {
 namespace {
 
 diffusion::IrradianceAt irradiance_on(const BruteForceBody& body) {
-  return [&body](const glm::vec3& position, const glm::vec3& normal) {
-    glm::vec3 e(0);
+  const AmbientIrradiance around = ambient_irradiance(body.ambient, body.material.refractive_index);
+  return [&body, around](const glm::vec3& position, const glm::vec3& normal) {
+    glm::vec3 e = around.at(normal);
     for (const LightStorage& light : body.lights) {
       const glm::vec3 entering = entering_irradiance(light, position, normal, body.material.refractive_index);
       if (entering == glm::vec3(0)) continue;
@@ -64,24 +65,22 @@ absl::StatusOr<std::vector<glm::vec3>> brute_force_radiosity(const BruteForceBod
   std::vector<glm::vec3> receivers(positions_mm.begin(), positions_mm.end());
   std::vector<glm::vec3> receiver_normals(normals.begin(), normals.end());
   for (const OppositePoint& opposite : opposites) {
-    const glm::uvec3& t = body.topology.triangles[opposite.triangle];
-    const auto at = [&](const std::vector<glm::vec3>& values) {
-      return opposite.weights.x * values[t.x] + opposite.weights.y * values[t.y] + opposite.weights.z * values[t.z];
-    };
-    receivers.push_back(at(body.shape.positions_mm));
-    const glm::vec3 sum = at(body.shape.normals);
+    receivers.push_back(opposite.of(body.topology.triangles, body.shape.positions_mm));
+    const glm::vec3 sum = opposite.of(body.topology.triangles, body.shape.normals);
     const float length = glm::length(sum);
     receiver_normals.push_back(length > 0 ? sum / length : glm::vec3(0, 0, 1));
   }
   auto radiosity = uncorrected_radiosity(body, receivers, receiver_normals, cancelled, std::move(progress));
   if (!radiosity.ok()) return radiosity;
   const SlabGains gains(body.material);
-  for (size_t i = 0; i < opposites.size(); ++i) {
-    (*radiosity)[i] = slab_corrected(gains.at(opposites[i].thickness_mm), (*radiosity)[i],
-                                     (*radiosity)[opposites.size() + i]);
+  constexpr size_t kRays = ThicknessField::kRays;
+  const auto there = std::span<const glm::vec3>(*radiosity).subspan(positions_mm.size());
+  std::vector<glm::vec3> corrected;
+  for (size_t i = 0; i < positions_mm.size(); ++i) {
+    corrected.push_back(slab_corrected(gains, std::span(opposites).subspan(kRays * i, kRays), (*radiosity)[i],
+                                       there.subspan(kRays * i, kRays)));
   }
-  radiosity->resize(opposites.size());
-  return radiosity;
+  return corrected;
 }
 
 std::vector<glm::vec3> brute_force_irradiance(const BruteForceBody& body, std::span<const glm::vec3> positions_mm,

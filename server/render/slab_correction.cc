@@ -1,6 +1,7 @@
 #include "render/slab_correction.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "glm/common.hpp"
@@ -15,6 +16,9 @@ constexpr float kSteps = 100;  ///< a factor of e
 /// In mean free paths: below, faces do not differ; above, a slab is as good as a half-space, or as good as any that
 /// absorbs nothing, whose far face tells at 1/d.
 constexpr float kThinnest = 0.02f, kThickest = 2000;
+
+/// Cosines between walls that count as a slab's not at all, and whole.
+constexpr float kApart = 0.17f, kParallel = 0.87f;
 
 }  // namespace
 
@@ -37,22 +41,28 @@ optics::SlabGain SlabGains::at(float thickness_mm) const {
   return {glm::mix(low.own, high.own, share), glm::mix(low.opposite, high.opposite, share)};
 }
 
-glm::vec3 slab_corrected(const optics::SlabGain& gain, const glm::vec3& here, const glm::vec3& there) {
-  return glm::max(gain.own * here + gain.opposite * there, glm::vec3(0));
+glm::vec3 slab_corrected(const SlabGains& gains, std::span<const OppositePoint> opposites, const glm::vec3& here,
+                         std::span<const glm::vec3> there) {
+  glm::vec3 sum(0);
+  for (size_t i = 0; i < opposites.size(); ++i) {
+    const optics::SlabGain gain = gains.at(opposites[i].thickness_mm);
+    const float share = glm::smoothstep(kApart, kParallel, opposites[i].facing);
+    sum += here + share * ((gain.own - 1.0f) * here + gain.opposite * there[i]);
+  }
+  return glm::max(sum / static_cast<float>(opposites.size()), glm::vec3(0));
 }
 
 void correct_slabs(const SlabGains& gains, std::span<const OppositePoint> opposites,
                    std::span<const glm::uvec3> triangles, std::span<const glm::vec3> radiosity,
                    std::span<glm::vec3> corrected) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, opposites.size(), 1024),
+  constexpr size_t kRays = ThicknessField::kRays;
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, corrected.size(), 1024),
                     [&](const tbb::blocked_range<size_t>& range) {
+                      std::array<glm::vec3, kRays> there;
                       for (size_t v = range.begin(); v != range.end(); ++v) {
-                        const OppositePoint& opposite = opposites[v];
-                        const glm::uvec3& t = triangles[opposite.triangle];
-                        const glm::vec3 there = opposite.weights.x * radiosity[t.x] +
-                                                opposite.weights.y * radiosity[t.y] +
-                                                opposite.weights.z * radiosity[t.z];
-                        corrected[v] = slab_corrected(gains.at(opposite.thickness_mm), radiosity[v], there);
+                        const auto own = opposites.subspan(kRays * v, kRays);
+                        for (size_t i = 0; i < kRays; ++i) there[i] = own[i].of(triangles, radiosity);
+                        corrected[v] = slab_corrected(gains, own, radiosity[v], there);
                       }
                     });
 }

@@ -22,11 +22,13 @@ class SlabGains {
   std::vector<optics::SlabGain> gains_;
 };
 
-/// own·here + opposite·there, not below 0.
-glm::vec3 slab_corrected(const optics::SlabGain& gain, const glm::vec3& here, const glm::vec3& there);
+/// The mean over a point's `opposites` of own·here + opposite·there, not below 0; `there` has as many radiosities.
+/// Less is corrected the less parallel the walls are: where they are at 80° and more to each other, nothing.
+glm::vec3 slab_corrected(const SlabGains& gains, std::span<const OppositePoint> opposites, const glm::vec3& here,
+                         std::span<const glm::vec3> there);
 
-/// Corrects the radiosities at vertices of a mesh: `opposites` are those of each vertex, `corrected` gets as many
-/// values. Over all cores.
+/// Corrects the radiosities at vertices of a mesh: `opposites` are ThicknessField::find() of them, `corrected` gets a
+/// value a vertex. Over all cores.
 void correct_slabs(const SlabGains& gains, std::span<const OppositePoint> opposites,
                    std::span<const glm::uvec3> triangles, std::span<const glm::vec3> radiosity,
                    std::span<glm::vec3> corrected);

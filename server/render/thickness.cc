@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
@@ -19,6 +20,9 @@ constexpr float kOffset = 1e-5f;
 /// Surfaces in a row by which a ray may enter (parts of the body in each other) before it counts as lost.
 constexpr int kMostEntered = 8;
 constexpr int kTries = 3;
+/// Tangent of the angle between the outer rays and the normal: light that crosses d spreads over about that.
+constexpr float kSlope = 0.6f;
+constexpr float kNone = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
@@ -84,21 +88,12 @@ void ThicknessField::update(std::span<const glm::uvec3> triangles, const geometr
   e.offset_mm = kOffset * std::max({extent.x, extent.y, extent.z});
 }
 
-OppositePoint ThicknessField::find(const glm::vec3& point_mm, const glm::vec3& normal) const {
-  const glm::vec3 across = std::abs(normal.x) < 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
-  const glm::vec3 beside = 7 * embree_->offset_mm * glm::cross(normal, across);
-  OppositePoint found;
-  for (int i = 0; i < kTries && found.thickness_mm == std::numeric_limits<float>::infinity(); ++i) {
-    found = trace(point_mm + static_cast<float>(i) * beside, normal);
-  }
-  return found;
-}
-
-OppositePoint ThicknessField::trace(const glm::vec3& start_mm, const glm::vec3& normal) const {
+OppositePoint ThicknessField::trace(const glm::vec3& start_mm, const glm::vec3& direction,
+                                    const glm::vec3& normal) const {
   const Embree& e = *embree_;
   RTCRayHit ray{};
   ray.ray.org_x = start_mm.x, ray.ray.org_y = start_mm.y, ray.ray.org_z = start_mm.z;
-  ray.ray.dir_x = -normal.x, ray.ray.dir_y = -normal.y, ray.ray.dir_z = -normal.z;
+  ray.ray.dir_x = direction.x, ray.ray.dir_y = direction.y, ray.ray.dir_z = direction.z;
   ray.ray.mask = ~0u;
   ray.ray.tnear = e.offset_mm;
   for (int entered = 0; entered < kMostEntered; ++entered) {
@@ -111,8 +106,9 @@ OppositePoint ThicknessField::trace(const glm::vec3& start_mm, const glm::vec3& 
     const glm::uvec3& t = e.triangles[ray.hit.primID];
     const glm::vec3& a = e.positions_mm[t.x];
     const glm::vec3 facet = e.winding * glm::cross(e.positions_mm[t.y] - a, e.positions_mm[t.z] - a);
-    if (glm::dot(facet, normal) < 0) {
-      return {ray.ray.tfar, ray.hit.primID, {1 - ray.hit.u - ray.hit.v, ray.hit.u, ray.hit.v}};
+    if (glm::dot(facet, direction) > 0) {
+      return {-ray.ray.tfar * glm::dot(direction, normal), -glm::dot(facet, normal) / glm::length(facet),
+              ray.hit.primID, ray.hit.u, ray.hit.v};
     }
     ray.ray.tnear = ray.ray.tfar + e.offset_mm;
   }
@@ -121,10 +117,26 @@ OppositePoint ThicknessField::trace(const glm::vec3& start_mm, const glm::vec3& 
 
 std::vector<OppositePoint> ThicknessField::find(std::span<const glm::vec3> points_mm,
                                                 std::span<const glm::vec3> normals) const {
-  std::vector<OppositePoint> found(points_mm.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, found.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t i = range.begin(); i != range.end(); ++i) found[i] = find(points_mm[i], normals[i]);
-  });
+  std::vector<OppositePoint> found(kRays * points_mm.size());
+  const auto find_one = [&](size_t i) {
+    const glm::vec3& normal = normals[i];
+    const glm::vec3 across = std::abs(normal.x) < 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+    const glm::vec3 x = glm::normalize(glm::cross(normal, across)), y = glm::cross(normal, x);
+    for (size_t ray = 0; ray < kRays; ++ray) {
+      const float turn = 2 * std::numbers::pi_v<float> * static_cast<float>(ray) / (kRays - 1);
+      const float slope = ray == 0 ? 0 : kSlope;
+      const glm::vec3 direction = glm::normalize(slope * (std::cos(turn) * x + std::sin(turn) * y) - normal);
+      OppositePoint& opposite = found[kRays * i + ray];
+      for (int tries = 0; tries < kTries && opposite.thickness_mm == kNone; ++tries) {
+        const float beside = 7 * embree_->offset_mm * static_cast<float>(tries);
+        opposite = trace(points_mm[i] + beside * x, direction, normal);
+      }
+    }
+  };
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, points_mm.size(), 256),
+                    [&](const tbb::blocked_range<size_t>& range) {
+                      for (size_t i = range.begin(); i != range.end(); ++i) find_one(i);
+                    });
   return found;
 }
 

@@ -12,11 +12,18 @@
 
 namespace diaphane::render {
 
-/// Where the way inward along the normal leaves the body.
+/// Where a ray inward leaves the body.
 struct OppositePoint {
-  float thickness_mm = std::numeric_limits<float>::infinity();  ///< infinite: it does not leave it
+  float thickness_mm = std::numeric_limits<float>::infinity();  ///< along the normal; infinite: it does not leave it
+  float facing = 0;  ///< cosine between the two walls, 1 where they are parallel
   uint32_t triangle = 0;
-  glm::vec3 weights{1, 0, 0};  ///< of the triangle's corners
+  float u = 0, v = 0;  ///< barycentric, of the triangle's second and third corner
+
+  /// Values of vertices there.
+  glm::vec3 of(std::span<const glm::uvec3> triangles, std::span<const glm::vec3> values) const {
+    const glm::uvec3& t = triangles[triangle];
+    return (1 - u - v) * values[t.x] + u * values[t.y] + v * values[t.z];
+  }
 };
 
 /// One mesh, asked by rays (Embree), whose structure is refitted as the mesh moves. update() by one thread, find() by
@@ -31,16 +38,18 @@ class ThicknessField {
   /// Takes the mesh as it is now; `triangles` must stay until the next call.
   void update(std::span<const glm::uvec3> triangles, const geometry::PlacedShape& shape);
 
-  /// A ray that slips through between triangles is tried again from beside the point.
-  OppositePoint find(const glm::vec3& point_mm, const glm::vec3& normal) const;
-  /// find() at many points, over all cores.
+  /// Rays a point: one along the normal, the others around it, as light spreads on its way.
+  static constexpr size_t kRays = 8;
+
+  /// The opposite points of each point, one after the other, over all cores. A ray that slips through between triangles
+  /// is tried again from beside the point.
   std::vector<OppositePoint> find(std::span<const glm::vec3> points_mm, std::span<const glm::vec3> normals) const;
 
   size_t bytes() const;
 
  private:
   struct Embree;
-  OppositePoint trace(const glm::vec3& start_mm, const glm::vec3& normal) const;
+  OppositePoint trace(const glm::vec3& start_mm, const glm::vec3& direction, const glm::vec3& normal) const;
   std::unique_ptr<Embree> embree_;
 };
 

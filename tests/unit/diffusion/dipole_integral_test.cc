@@ -94,7 +94,7 @@ float error_against_reference(const Mesh& mesh, const std::vector<PointLight>& l
   return std::max({error.x, error.y, error.z});
 }
 
-/// Of points, the share whose error moves by less than 1 % of the mean from pose to pose as a torus swells into a ball.
+/// Of points, the share whose error moves by less than 0.4 % of the mean from pose to pose as a torus swells into a ball.
 double steady_share(Quality quality) {
   const Mesh torus = testing::make_torus(7, 3, 320, 128);
   const auto points = testing::random_points(torus, 400, 7);
@@ -111,7 +111,7 @@ double steady_share(Quality quality) {
     for (size_t i = 0; i < before.truth.size(); ++i) {
       const glm::vec3 moved =
           glm::abs((after.integral[i] - before.integral[i]) - (after.truth[i] - before.truth[i])) / mean;
-      steady += std::max({moved.x, moved.y, moved.z}) < 0.01f ? 1 : 0;
+      steady += std::max({moved.x, moved.y, moved.z}) < 0.004f ? 1 : 0;
       ++all;
     }
     before = std::move(after);
@@ -159,7 +159,8 @@ TEST(DipoleIntegral, IsGoodOnACubeOfTwelveTriangles) {
 }
 
 TEST(DipoleIntegral, DoesNotFlickerAtFineAsTheBodyDeforms) {
-  EXPECT_GE(steady_share(Quality::kFine), 0.999);
+  // A torus is smoother than the bodies whose bar is 1 % (docs/integral.md): openings of 0.28/0.45 do not reach this.
+  EXPECT_GE(steady_share(Quality::kFine), 0.998);
 }
 
 TEST(DipoleIntegral, LetsLightThroughAThinPlate) {

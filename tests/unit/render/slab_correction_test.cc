@@ -16,14 +16,30 @@ TEST(ThicknessField, IsTheDiameterOfATorussTube) {
   ThicknessField field;
   field.update(torus.triangles, {.positions_mm = torus.positions_mm, .normals = torus.normals});
   const auto opposites = field.find(torus.positions_mm, torus.normals);
-  for (size_t v = 0; v < opposites.size(); ++v) {
-    EXPECT_NEAR(opposites[v].thickness_mm, 4, 0.04) << v;
-    const glm::uvec3& t = torus.triangles[opposites[v].triangle];
-    const glm::vec3 there = opposites[v].weights.x * torus.positions_mm[t.x] +
-                            opposites[v].weights.y * torus.positions_mm[t.y] +
-                            opposites[v].weights.z * torus.positions_mm[t.z];
+  ASSERT_EQ(opposites.size(), ThicknessField::kRays * torus.positions_mm.size());
+  for (size_t v = 0; v < torus.positions_mm.size(); ++v) {
+    const OppositePoint& along = opposites[ThicknessField::kRays * v];
+    EXPECT_NEAR(along.thickness_mm, 4, 0.04) << v;
+    EXPECT_GT(along.facing, 0.99f) << v;
+    const glm::vec3 there = along.of(torus.triangles, torus.positions_mm);
     EXPECT_LT(glm::length(there - (torus.positions_mm[v] - 4.0f * torus.normals[v])), 0.05f) << v;
   }
+}
+
+TEST(ThicknessField, IsThePlatesAlongEveryRay) {
+  const testing::Mesh plate = testing::make_box({20, 20, 1}, 2);
+  ThicknessField field;
+  field.update(plate.triangles, {.positions_mm = plate.positions_mm, .normals = plate.normals});
+  const glm::vec3 point(0.3f, 0.4f, 0.5f), normal(0, 0, 1);
+  for (const OppositePoint& opposite : field.find(std::span(&point, 1), std::span(&normal, 1))) {
+    EXPECT_NEAR(opposite.thickness_mm, 1, 1e-4);
+    EXPECT_NEAR(opposite.facing, 1, 1e-4);
+  }
+}
+
+/// At one point, along the normal.
+OppositePoint opposite_of(const ThicknessField& field, const glm::vec3& point, const glm::vec3& normal) {
+  return field.find(std::span(&point, 1), std::span(&normal, 1)).front();
 }
 
 TEST(ThicknessField, FollowsTheMeshAndItsMirrorImage) {
@@ -31,18 +47,18 @@ TEST(ThicknessField, FollowsTheMeshAndItsMirrorImage) {
   ThicknessField field;
   geometry::PlacedShape shape{.positions_mm = box.positions_mm, .normals = box.normals};
   field.update(box.triangles, shape);
-  EXPECT_NEAR(field.find(glm::vec3(2, 0.1f, 0.2f), {1, 0, 0}).thickness_mm, 4, 1e-4);
+  EXPECT_NEAR(opposite_of(field, {2, 0.1f, 0.2f}, {1, 0, 0}).thickness_mm, 4, 1e-4);
   for (glm::vec3& p : shape.positions_mm) p.x *= -0.5f;
   shape.flipped = true;
   field.update(box.triangles, shape);
-  EXPECT_NEAR(field.find(glm::vec3(1, 0.1f, 0.2f), {1, 0, 0}).thickness_mm, 2, 1e-4);
+  EXPECT_NEAR(opposite_of(field, {1, 0.1f, 0.2f}, {1, 0, 0}).thickness_mm, 2, 1e-4);
 }
 
 TEST(ThicknessField, IsInfiniteWhereNothingLiesBehind) {
   const testing::Mesh disc = testing::make_graded_disc(0.1f, 5, 16);
   ThicknessField field;
   field.update(disc.triangles, {.positions_mm = disc.positions_mm, .normals = disc.normals});
-  const OppositePoint opposite = field.find(disc.positions_mm[0], disc.normals[0]);
+  const OppositePoint opposite = opposite_of(field, disc.positions_mm[0], disc.normals[0]);
   EXPECT_EQ(opposite.thickness_mm, std::numeric_limits<float>::infinity());
   const optics::SlabGain gain = SlabGains(optics::find_preset("marble")->coefficients).at(opposite.thickness_mm);
   EXPECT_EQ(gain.own, glm::vec3(1));

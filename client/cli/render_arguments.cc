@@ -214,8 +214,18 @@ void add_render_options(CLI::App& command, RenderArguments& arguments) {
   add_lights(command, "--spot-light", "X,Y,Z,DX,DY,DZ,INNER,OUTER,R,G,B",
              "A spot: place, axis, angles from the axis in degrees, W/sr; may be repeated", parse_spot_light,
              arguments.lights);
-  for (const char* flag : {"--material", "--absorption", "--scattering", "--diffuse-color", "--mean-free-path", "--ior",
-                           "--profile", "--mm-per-unit", "--height-mm", "--point-light", "--directional-light", "--spot-light"}) {
+  auto* environment = command.add_option("--environment", arguments.environment_file,
+                                         "Light from all around: a latitude-longitude map, .hdr or .exr");
+  environment->type_name("FILE");
+  add_parsed(command, "--environment-rotation", "DEG", "Turns it about +y, counter-clockwise from above", parse_number,
+             arguments.environment_rotation_deg)
+      ->needs(environment);
+  add_parsed(command, "--environment-intensity", "X", "Multiplies it (default: 1)", parse_number,
+             arguments.environment_intensity)
+      ->needs(environment);
+  for (const char* flag :
+       {"--material", "--absorption", "--scattering", "--diffuse-color", "--mean-free-path", "--ior", "--profile",
+        "--mm-per-unit", "--height-mm", "--point-light", "--directional-light", "--spot-light"}) {
     scene->excludes(command.get_option(flag));
   }
 }

@@ -50,6 +50,9 @@ struct RenderArguments {
   std::optional<float> fov_y_deg;
 
   std::vector<Light> lights;
+  std::string environment_file;
+  std::optional<float> environment_rotation_deg;
+  std::optional<float> environment_intensity;
 };
 
 /// Declares the options on `command`; parsing fills `arguments`, which must live as long. What cannot be parsed, is

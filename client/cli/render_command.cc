@@ -45,6 +45,11 @@ absl::Status fill_scene(const Scene& scene, const RenderPlan& plan, Progress& pr
   for (const Light& light : plan.lights) {
     if (const auto handle = scene.add_light(light); !handle.ok()) return handle.status();
   }
+  if (plan.environment) {
+    progress.step("uploading the environment");
+    const auto revision = scene.set_environment(*plan.environment, plan.environment_options);
+    if (!revision.ok()) return revision.status();
+  }
   for (size_t i = 0; i < plan.meshes.size(); ++i) {
     const MeshData& mesh = plan.meshes[i];
     progress.step(

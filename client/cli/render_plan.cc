@@ -136,7 +136,15 @@ absl::StatusOr<RenderPlan> plan_render(const RenderArguments& arguments) {
   if (!unit.ok()) return unit.status();
   plan.millimetres_per_unit = unit->millimetres_per_unit;
   if (!unit->note.empty()) plan.notes.push_back(std::move(unit->note));
-  if (plan.lights.empty()) plan.lights = {key_light(*bounds, plan.options.camera, plan.millimetres_per_unit)};
+  if (!arguments.environment_file.empty()) {
+    absl::StatusOr<EnvironmentMap> map = read_environment_file(arguments.environment_file);
+    if (!map.ok()) return with_exit_code(map.status(), kExitFile);
+    plan.environment = *std::move(map);
+    if (arguments.environment_rotation_deg) plan.environment_options.rotation_deg = *arguments.environment_rotation_deg;
+    if (arguments.environment_intensity) plan.environment_options.intensity = *arguments.environment_intensity;
+  }
+  if (plan.lights.empty() && !plan.environment)
+    plan.lights = {key_light(*bounds, plan.options.camera, plan.millimetres_per_unit)};
   return plan;
 }
 

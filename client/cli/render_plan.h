@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "diaphane/environment.h"
 #include "diaphane/mesh_data.h"
 #include "diaphane/render_options.h"
 #include "diaphane/values.h"
@@ -19,7 +20,9 @@ struct RenderPlan {
   std::vector<size_t> material_of_mesh;  ///< into `materials`, one per mesh
   std::vector<Material> materials;
   std::optional<float> refractive_index;  ///< in place of that of the only material, a preset
-  std::vector<Light> lights;              ///< at least one
+  std::vector<Light> lights;              ///< at least one, unless there is an environment
+  std::optional<EnvironmentMap> environment;
+  EnvironmentOptions environment_options;
   double millimetres_per_unit = 1;
   RenderOptions options;
   std::vector<std::string> notes;  ///< one line each, for stderr

@@ -145,7 +145,8 @@ SceneInfo from_proto(const v1::Scene& message) {
           .revision = message.revision(),
           .mesh_count = message.mesh_count(),
           .material_count = message.material_count(),
-          .light_count = message.light_count()};
+          .light_count = message.light_count(),
+          .has_environment = message.has_environment()};
 }
 
 MeshInfo from_proto(const v1::Mesh& message) {

@@ -9,9 +9,15 @@
 namespace diaphane::internal {
 
 static_assert(std::endian::native == std::endian::little, "payloads are little-endian");
-static_assert(sizeof(Vec3) == 3 * sizeof(float), "Vec3 travels as it lies in memory");
+static_assert(sizeof(Vec3) == 3 * sizeof(float) && sizeof(Rgb) == 3 * sizeof(float),
+              "they travel as they lie in memory");
 
 void Payload::append(std::span<const Vec3> values) {
+  parts_.push_back(std::as_bytes(values));
+  total_bytes_ += values.size_bytes();
+}
+
+void Payload::append(std::span<const Rgb> values) {
   parts_.push_back(std::as_bytes(values));
   total_bytes_ += values.size_bytes();
 }

@@ -19,6 +19,7 @@ inline constexpr size_t kChunkBytes = size_t{1} << 20;
 class Payload {
  public:
   void append(std::span<const Vec3> values);
+  void append(std::span<const Rgb> values);
   void append(std::span<const uint32_t> values);
 
   uint64_t total_bytes() const { return total_bytes_; }

@@ -90,6 +90,28 @@ absl::StatusOr<uint64_t> Scene::remove_light(const LightHandle& handle) const {
   return revision_of(connection_->call(connection_->scene_service(), &SceneStub::DeleteLight, request));
 }
 
+absl::StatusOr<uint64_t> Scene::set_environment(const EnvironmentMap& map, const EnvironmentOptions& options) const {
+  return internal::upload_environment(*connection_, name_, map, options);
+}
+
+absl::StatusOr<uint64_t> Scene::update_environment(const EnvironmentOptions& options) const {
+  v1::UpdateEnvironmentRequest request;
+  request.mutable_environment()->set_name(name_ + "/environment");
+  request.mutable_environment()->set_rotation_deg(options.rotation_deg);
+  request.mutable_environment()->set_intensity(options.intensity);
+  request.mutable_update_mask()->add_paths("rotation_deg");
+  request.mutable_update_mask()->add_paths("intensity");
+  request.set_request_id(new_request_id());
+  return revision_of(connection_->call(connection_->scene_service(), &SceneStub::UpdateEnvironment, request));
+}
+
+absl::StatusOr<uint64_t> Scene::remove_environment() const {
+  v1::DeleteEnvironmentRequest request;
+  request.set_name(name_ + "/environment");
+  request.set_request_id(new_request_id());
+  return revision_of(connection_->call(connection_->scene_service(), &SceneStub::DeleteEnvironment, request));
+}
+
 absl::StatusOr<MeshHandle> Scene::add_mesh(const MeshData& mesh, const MeshOptions& options) const {
   return internal::upload_mesh(*connection_, name_, mesh, options);
 }

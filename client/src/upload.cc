@@ -22,12 +22,12 @@ absl::Status check_counts(std::span<const Vec3> positions, std::span<const Vec3>
   return absl::OkStatus();
 }
 
-template <typename Request>
-absl::StatusOr<v1::MeshResponse> stream(
-    const Connection& connection,
-    std::unique_ptr<grpc::ClientWriter<Request>> (SceneStub::*method)(grpc::ClientContext*, v1::MeshResponse*),
-    const Request& header, const Payload& payload) {
-  v1::MeshResponse response;
+template <typename Request, typename Response>
+absl::StatusOr<Response> stream(const Connection& connection,
+                                std::unique_ptr<grpc::ClientWriter<Request>> (SceneStub::*method)(grpc::ClientContext*,
+                                                                                                  Response*),
+                                const Request& header, const Payload& payload) {
+  Response response;
   const absl::Status status = connection.run([&](grpc::ClientContext& context) {
     const auto writer = (connection.scene_service().get()->*method)(&context, &response);
     // A write fails once the server has refused; Finish says why.
@@ -72,6 +72,31 @@ absl::StatusOr<MeshHandle> upload_mesh(const Connection& connection, const std::
   const auto response = stream(connection, &SceneStub::UploadMesh, request, payload);
   if (!response.ok()) return response.status();
   return MeshHandle{response->mesh().name()};
+}
+
+absl::StatusOr<uint64_t> upload_environment(const Connection& connection, const std::string& scene,
+                                            const EnvironmentMap& map, const EnvironmentOptions& options) {
+  if (map.radiance.size() != uint64_t{map.width_px} * map.height_px) {
+    return absl::InvalidArgumentError(fmt::format("radiance: must be width_px·height_px = {} pixels, got {}",
+                                                  uint64_t{map.width_px} * map.height_px, map.radiance.size()));
+  }
+  Payload payload;
+  payload.append(std::span<const Rgb>(map.radiance));
+
+  v1::UploadEnvironmentRequest request;
+  v1::EnvironmentHeader& header = *request.mutable_header();
+  header.set_parent(scene);
+  v1::Environment& environment = *header.mutable_environment();
+  environment.set_width_px(map.width_px);
+  environment.set_height_px(map.height_px);
+  environment.set_rotation_deg(options.rotation_deg);
+  environment.set_intensity(options.intensity);
+  header.set_total_bytes(payload.total_bytes());
+  header.set_sha256(payload.sha256());
+  header.set_request_id(new_request_id());
+  const auto response = stream(connection, &SceneStub::UploadEnvironment, request, payload);
+  if (!response.ok()) return response.status();
+  return response->scene_revision();
 }
 
 absl::StatusOr<uint64_t> upload_positions(const Connection& connection, const MeshHandle& handle,

@@ -17,8 +17,9 @@ namespace diaphane::render {
 namespace {
 
 diffusion::IrradianceAt irradiance_on(const BruteForceBody& body) {
-  return [&body](const glm::vec3& position, const glm::vec3& normal) {
-    glm::vec3 e(0);
+  const AmbientIrradiance around = ambient_irradiance(body.ambient, body.material.refractive_index);
+  return [&body, around](const glm::vec3& position, const glm::vec3& normal) {
+    glm::vec3 e = around.at(normal);
     for (const LightStorage& light : body.lights) {
       const glm::vec3 entering = entering_irradiance(light, position, normal, body.material.refractive_index);
       if (entering == glm::vec3(0)) continue;

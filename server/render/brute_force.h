@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "glm/vec4.hpp"
+#include "render/ambient.h"
 #include "render/placed_mesh.h"
 #include "render/shadow.h"
 #include "render/uniforms.h"
@@ -20,6 +21,7 @@ struct BruteForceBody {
   const geometry::PlacedShape& shape;
   const optics::Coefficients& material;
   std::span<const LightStorage> lights;
+  const Ambient& ambient;
   const ShadowScene* shadows;  ///< null: unshadowed
   bool slab_correction = false;
 };

@@ -81,10 +81,26 @@ void place_vertices(const geometry::PlacedShape& shape, size_t first, size_t cou
   }
 }
 
+/// As AmbientIrradiance::at().
+void add_ambient(const AmbientIrradiance& ambient, const SurfacePoints& points, size_t count, EnteringLight& sum) {
+  for (size_t i = 0; i < count; i += 4) {
+    const Four x = load4(points.normal_x + i), y = load4(points.normal_y + i), z = load4(points.normal_z + i);
+    Four polynomials[optics::kHarmonics];
+    optics::harmonic_polynomials<Four, float>(ambient.cosine * x - ambient.sine * z, y,
+                                              ambient.sine * x + ambient.cosine * z, polynomials);
+    for (int c = 0; c < 3; ++c) {
+      Four e{};
+      for (size_t k = 0; k < optics::kHarmonics; ++k) e += ambient.harmonics[k][c] * polynomials[k];
+      diffusion::store4(sum.channel[c] + i, load4(sum.channel[c] + i) + diffusion::max4(e, Four{}));
+    }
+  }
+}
+
 /// E at the `count` points from `first` on.
-void light_points(std::span<const LightStorage> lights, float refractive_index, const SurfacePoints& points,
-                  size_t first, size_t count, const Receivers& receivers) {
+void light_points(std::span<const LightStorage> lights, const AmbientIrradiance* ambient, float refractive_index,
+                  const SurfacePoints& points, size_t first, size_t count, const Receivers& receivers) {
   EnteringLight sum{};
+  if (ambient != nullptr) add_ambient(*ambient, points, count, sum);
   for (size_t light = 0; light < lights.size(); ++light) {
     const float* seen =
         receivers.seen == nullptr ? nullptr : receivers.seen + light * receivers.irradiance.size() + first;
@@ -100,13 +116,13 @@ void light_points(std::span<const LightStorage> lights, float refractive_index, 
 void light_triangles(const LitSurface& surface, size_t first, size_t count, const Receivers& receivers) {
   SurfacePoints points;
   place_triangles(surface.topology, surface.shape, first, count, points);
-  light_points(surface.lights, surface.refractive_index, points, first, count, receivers);
+  light_points(surface.lights, surface.ambient, surface.refractive_index, points, first, count, receivers);
 }
 
 void light_vertices(const LitSurface& surface, size_t first, size_t count, const Receivers& receivers) {
   SurfacePoints points;
   place_vertices(surface.shape, first, count, points);
-  light_points(surface.lights, surface.refractive_index, points, first, count, receivers);
+  light_points(surface.lights, surface.ambient, surface.refractive_index, points, first, count, receivers);
 }
 
 }  // namespace diaphane::render::HWY_NAMESPACE
@@ -152,11 +168,13 @@ void IrradianceStage::cast_shadows(const diffusion::SurfaceTopology& topology, c
 }
 
 void IrradianceStage::run(const diffusion::SurfaceTopology& topology, const geometry::PlacedShape& shape,
-                          std::span<const LightStorage> lights, float refractive_index, ShadowScene* shadows) {
+                          std::span<const LightStorage> lights, const Ambient& ambient, float refractive_index,
+                          ShadowScene* shadows) {
   irradiance_.of_triangle.resize(topology.triangles.size());
   irradiance_.of_vertex.resize(shape.positions_mm.size());
   if (shadows != nullptr) cast_shadows(topology, shape, lights, *shadows);
-  const LitSurface surface{topology, shape, lights, refractive_index};
+  const AmbientIrradiance around = ambient_irradiance(ambient, refractive_index);
+  const LitSurface surface{topology, shape, lights, ambient.light == nullptr ? nullptr : &around, refractive_index};
   const Receivers triangles{irradiance_.of_triangle, shadows == nullptr ? nullptr : of_triangle_.data()};
   const Receivers vertices{irradiance_.of_vertex, shadows == nullptr ? nullptr : of_vertex_.data()};
   const size_t triangle_count = triangles.irradiance.size(), vertex_count = vertices.irradiance.size();

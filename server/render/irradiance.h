@@ -6,12 +6,13 @@
 
 #include "diffusion/surface_topology.h"
 #include "geometry/shape.h"
+#include "render/ambient.h"
 #include "render/shadow.h"
 #include "render/uniforms.h"
 
 namespace diaphane::render {
 
-/// E (RGB, W·mm⁻²) of all lights, Fresnel and clamped cosine included (paper Eq. 4).
+/// E (RGB, W·mm⁻²) of all lights and what is around, Fresnel and clamped cosine included (paper Eq. 4).
 struct SurfaceIrradiance {
   std::vector<glm::vec3>
       of_triangle;  ///< at centroids, with the renormalised mean of the vertex normals; the topology's order
@@ -23,6 +24,7 @@ struct LitSurface {
   const diffusion::SurfaceTopology& topology;
   const geometry::PlacedShape& shape;
   std::span<const LightStorage> lights;
+  const AmbientIrradiance* ambient;  ///< null: none
   float refractive_index;
 };
 
@@ -37,7 +39,7 @@ class IrradianceStage {
  public:
   /// `shadows` null: every light is seen everywhere. A vertex sees of a light what its triangles see, on average.
   void run(const diffusion::SurfaceTopology& topology, const geometry::PlacedShape& shape,
-           std::span<const LightStorage> lights, float refractive_index, ShadowScene* shadows);
+           std::span<const LightStorage> lights, const Ambient& ambient, float refractive_index, ShadowScene* shadows);
 
   const SurfaceIrradiance& result() const { return irradiance_; }
 

@@ -9,7 +9,8 @@
 
 namespace diaphane::render {
 
-/// All lights of `scene`; where it has none, one key light for a body within `bounds_mm`: from above, left and in front
+/// All lights of `scene`, its environment's lamps after them; where it has neither, one key light for a body within
+/// `bounds_mm`: from above, left and in front
 /// (+y, −x, +z) at 2.5 times the radius of the bounding sphere, with an unattenuated irradiance of 2 W·mm⁻² at its
 /// centre.
 std::vector<LightStorage> lights_of(const scene::SceneSnapshot& scene, const geometry::Bounds& bounds_mm);

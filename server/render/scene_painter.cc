@@ -122,8 +122,8 @@ absl::StatusOr<Frame> ScenePainter::paint(const FrameRequest& request, const std
   const bool developed = picture && needs_developing(request.settings);
   Job job{request, cancelled, needs_of(request), developed ? PixelFormat::kLinearFloat : request.format};
   const Technique technique = request.settings.technique;
-  job.variant.lit =
-      casts_shadows(request.settings) && (technique == Technique::kPaper || technique == Technique::kLambert);
+  job.variant.lit = (casts_shadows(request.settings) || scene.environment != nullptr) &&
+                    (technique == Technique::kPaper || technique == Technique::kLambert);
   job.variant.channels = job.needs.light;
   gather_meshes(job);
   if (absl::Status updated = update(job); !updated.ok()) return updated;

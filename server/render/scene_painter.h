@@ -37,6 +37,7 @@ class ScenePainter {
     std::vector<DrawnMesh> meshes{};
     geometry::Bounds bounds_mm{};
     std::vector<LightStorage> lights{};
+    Ambient ambient{};
     ViewUniforms view{};
     StageClock clock{};
     ChannelTile channels{};  ///< of the tile at hand
@@ -53,7 +54,7 @@ class ScenePainter {
   void update_shadows(Job& job);
   void update_atlas(const DrawnMesh& drawn, Job& job);
   void update_integral(const DrawnMesh& drawn, bool shadowed, Job& job);
-  absl::Status update_lit(const DrawnMesh& drawn, Job& job);
+  absl::Status update_lit(const DrawnMesh& drawn, bool shadowed, Job& job);
   absl::Status update_mesh(const DrawnMesh& drawn, bool shadowed, Job& job);
   absl::Status update(Job& job);
 

@@ -53,8 +53,9 @@ absl::Status ScenePainter::draw_reference_tile(Job& job, const Tile& tile, uint8
   for (size_t i = 0; i < job.meshes.size(); ++i) {
     const DrawnMesh& drawn = job.meshes[i];
     const ShownPoints points = points_of(channels, i);
-    const BruteForceBody body{*drawn.mesh->topology, drawn.state->placed.shape(), drawn.material, job.lights,
-                              shadowed ? &shadows_ : nullptr, job.request.settings.slab_correction};
+    const BruteForceBody body{
+        *drawn.mesh->topology,          drawn.state->placed.shape(),         drawn.material, job.lights, job.ambient,
+        shadowed ? &shadows_ : nullptr, job.request.settings.slab_correction};
     std::function<void(double)> progress;
     if (job.request.progress) {
       progress = [&](double share) {

@@ -43,6 +43,7 @@ void ScenePainter::gather_meshes(Job& job) {
     job.bounds_mm.highest = glm::max(job.bounds_mm.highest, bounds.highest);
   }
   job.lights = lights_of(scene, job.bounds_mm);
+  job.ambient = ambient_of(scene);
 }
 
 void ScenePainter::update_shadows(Job& job) {
@@ -108,9 +109,10 @@ void ScenePainter::update_atlas(const DrawnMesh& drawn, Job& job) {
 void ScenePainter::update_integral(const DrawnMesh& drawn, bool shadowed, Job& job) {
   MeshState& state = *drawn.state;
   RefinedMesh& refined = state.refined;
-  state.light.update({refined, job.lights, drawn.material, job.request.settings.quality, shadowed ? &shadows_ : nullptr,
-                      shadowed ? shadows_generation_ : 0, job.request.settings.slab_correction},
-                     job.clock);
+  state.light.update(
+      {refined, job.lights, job.ambient, drawn.material, job.request.settings.quality, shadowed ? &shadows_ : nullptr,
+       shadowed ? shadows_generation_ : 0, job.request.settings.slab_correction},
+      job.clock);
   state.gpu.update(refined.topology(), refined.shape(), refined.generation(), job.clock);
   state.gpu.update_radiosity(state.light.radiosity(), state.light.generation(), job.clock);
   if (!job.needs.irradiance) return;
@@ -118,7 +120,7 @@ void ScenePainter::update_integral(const DrawnMesh& drawn, bool shadowed, Job& j
                               job.clock);
 }
 
-absl::Status ScenePainter::update_lit(const DrawnMesh& drawn, Job& job) {
+absl::Status ScenePainter::update_lit(const DrawnMesh& drawn, bool shadowed, Job& job) {
   MeshState& state = *drawn.state;
   state.placed.complete_normals(job.clock);
   absl::Status status =
@@ -127,8 +129,8 @@ absl::Status ScenePainter::update_lit(const DrawnMesh& drawn, Job& job) {
   // Lambert's E is without Fresnel.
   const float refractive_index =
       job.request.settings.technique == Technique::kLambert ? 1.0f : drawn.material.refractive_index;
-  state.vertex_light.update({*state.lit.topology(), state.lit.shape(), state.lit.generation(), job.lights,
-                             refractive_index, shadows_, shadows_generation_},
+  state.vertex_light.update({*state.lit.topology(), state.lit.shape(), state.lit.generation(), job.lights, job.ambient,
+                             refractive_index, shadowed ? &shadows_ : nullptr, shadowed ? shadows_generation_ : 0},
                             job.clock);
   state.gpu.update(state.lit.topology(), state.lit.shape(), state.lit.generation(), job.clock);
   state.gpu.update_irradiance(state.vertex_light.irradiance(), &state.vertex_light, state.vertex_light.generation(),
@@ -143,7 +145,7 @@ absl::Status ScenePainter::update_mesh(const DrawnMesh& drawn, bool shadowed, Jo
     return absl::OkStatus();
   }
   if (job.variant.lit) {
-    if (absl::Status status = update_lit(drawn, job); !status.ok()) return status;
+    if (absl::Status status = update_lit(drawn, shadowed, job); !status.ok()) return status;
   } else {
     state.placed.complete_normals(job.clock);
     state.gpu.update(drawn.mesh->topology, state.placed.shape(), state.placed.generation(), job.clock);

@@ -33,9 +33,10 @@ void SurfaceLight::update(const Inputs& inputs, StageClock& clock) {
   });
   stage("refit", moved, [&] { integral_->refit_geometry(); });
   std::vector<LightStorage> lights(inputs.lights.begin(), inputs.lights.end());
-  const bool relit = light_reads_.renew({placed, std::move(lights), refractive_index, inputs.shadows_generation});
+  const bool relit =
+      light_reads_.renew({placed, std::move(lights), inputs.ambient, refractive_index, inputs.shadows_generation});
   stage("irradiance", relit, [&] {
-    irradiance_.run(integral_->topology(), shape, inputs.lights, refractive_index, inputs.shadows);
+    irradiance_.run(integral_->topology(), shape, inputs.lights, inputs.ambient, refractive_index, inputs.shadows);
     ++irradiance_generation_;
   });
   stage("flux", flux_reads_.renew({placed, irradiance_generation_}), [&] {

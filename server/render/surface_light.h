@@ -24,6 +24,7 @@ class SurfaceLight {
   struct Inputs {
     RefinedMesh& mesh;  ///< gets its normals here
     std::span<const LightStorage> lights;
+    const Ambient& ambient;
     const optics::Coefficients& material;
     diffusion::Quality quality;
     ShadowScene* shadows;         ///< null: unshadowed
@@ -60,9 +61,10 @@ class SurfaceLight {
   uint64_t gather_generation_ = 0;
 
   // What each stage reads, in the order in which they run.
-  Memo<uint64_t> refit_reads_;                                                          // shape
-  Memo<std::tuple<uint64_t, std::vector<LightStorage>, float, uint64_t>> light_reads_;  // shape, lights, η, shadows
-  Memo<std::tuple<uint64_t, uint64_t>> flux_reads_;                                     // shape, irradiance
+  Memo<uint64_t> refit_reads_;  // shape
+  // shape, lights, what is around, η, shadows
+  Memo<std::tuple<uint64_t, std::vector<LightStorage>, Ambient, float, uint64_t>> light_reads_;
+  Memo<std::tuple<uint64_t, uint64_t>> flux_reads_;  // shape, irradiance
   Memo<optics::Coefficients> material_reads_;
   Memo<uint64_t> opposite_reads_;                                            // shape
   Memo<optics::Coefficients> gain_reads_;

@@ -36,7 +36,8 @@ float VertexLight::add(const LightStorage& light, const Inputs& inputs, std::spa
     const glm::vec3 entering = entering_irradiance(light, point_mm, normal, inputs.refractive_index);
     // What looks away needs no ray.
     const bool faces = entering != glm::vec3(0);
-    arrivals[v] = {entering, faces ? inputs.shadows.visibility_at(light, point_mm, normal) : 0.0f};
+    const bool asks = faces && inputs.shadows != nullptr;
+    arrivals[v] = {entering, asks ? inputs.shadows->visibility_at(light, point_mm, normal) : faces ? 1.0f : 0.0f};
   });
   double unshadowed_w = 0;
   double shadowed_w = 0;
@@ -53,14 +54,19 @@ float VertexLight::add(const LightStorage& light, const Inputs& inputs, std::spa
 
 void VertexLight::update(const Inputs& inputs, StageClock& clock) {
   std::vector<LightStorage> lights(inputs.lights.begin(), inputs.lights.end());
-  if (!reads_.renew({inputs.generation, lights, inputs.refractive_index, inputs.shadows_generation})) {
+  if (!reads_.renew({inputs.generation, lights, inputs.ambient, inputs.refractive_index, inputs.shadows_generation})) {
     clock.sleep("irradiance");
     return;
   }
   clock.run("irradiance", [&] {
     lights_ = std::move(lights);
-    inputs.shadows.prepare_rays();
+    if (inputs.shadows != nullptr) inputs.shadows->prepare_rays();
     irradiance_.assign(inputs.shape.positions_mm.size(), glm::vec3(0));
+    if (inputs.ambient.light != nullptr) {
+      const AmbientIrradiance around = ambient_irradiance(inputs.ambient, inputs.refractive_index);
+      tbb::parallel_for(size_t{0}, irradiance_.size(),
+                        [&](size_t v) { irradiance_[v] = around.at(inputs.shape.normals[v]); });
+    }
     const std::vector<float> areas_mm2 = vertex_areas(inputs.topology, inputs.shape);
     for (LightStorage& light : lights_) light.shape.z = add(light, inputs, areas_mm2);
     ++generation_;

@@ -1,4 +1,4 @@
-// E with shadows, for techniques whose shaders would find it without.
+// E with shadows and of what is around, for techniques whose shaders would find it without.
 #pragma once
 
 #include <span>
@@ -7,6 +7,7 @@
 
 #include "geometry/shape.h"
 #include "geometry/topology.h"
+#include "render/ambient.h"
 #include "render/memo.h"
 #include "render/shadow.h"
 #include "render/stage_clock.h"
@@ -14,7 +15,7 @@
 
 namespace diaphane::render {
 
-/// Light on one mesh, shadows included, at its vertices: a ray from each to each light that it faces. Stage:
+/// Light on one mesh at its vertices. With shadows, a ray from each to each light that it faces. Stage:
 /// irradiance; it sleeps while what it reads is the same. One thread calls; work is spread over all cores. The same
 /// bytes on any number of threads.
 class VertexLight {
@@ -24,8 +25,9 @@ class VertexLight {
     const geometry::PlacedShape& shape;
     uint64_t generation;  ///< of both
     std::span<const LightStorage> lights;
+    const Ambient& ambient;
     float refractive_index;  ///< 1: E without Fresnel
-    ShadowScene& shadows;
+    ShadowScene* shadows;    ///< null: unshadowed
     uint64_t shadows_generation;
   };
 
@@ -45,7 +47,8 @@ class VertexLight {
 
   std::vector<glm::vec3> irradiance_;
   std::vector<LightStorage> lights_;
-  Memo<std::tuple<uint64_t, std::vector<LightStorage>, float, uint64_t>> reads_;  // shape, lights, η, shadows
+  // shape, lights, what is around, η, shadows
+  Memo<std::tuple<uint64_t, std::vector<LightStorage>, Ambient, float, uint64_t>> reads_;
   uint64_t generation_ = 0;
 };
 

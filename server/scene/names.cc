@@ -13,6 +13,7 @@ namespace diaphane::scene {
 namespace {
 
 constexpr std::string_view kScenes = "scenes/";
+constexpr std::string_view kEnvironment = "/environment";
 
 bool is_id(std::string_view id) {
   return !id.empty() &&
@@ -57,6 +58,16 @@ absl::StatusOr<std::string> scene_of_child(const Reference& reference, Collectio
     if (check_scene_name({reference.field, scene}).ok()) return std::string(scene);
   }
   return base::invalid_field(reference.field, fmt::format("scenes/{{scene}}{}{{id}}", separator), reference.name);
+}
+
+std::string make_environment_name(std::string_view scene_name) { return std::string(scene_name).append(kEnvironment); }
+
+absl::StatusOr<std::string> scene_of_environment(const Reference& reference) {
+  if (reference.name.ends_with(kEnvironment)) {
+    const std::string_view scene = reference.name.substr(0, reference.name.size() - kEnvironment.size());
+    if (check_scene_name({reference.field, scene}).ok()) return std::string(scene);
+  }
+  return base::invalid_field(reference.field, "scenes/{scene}/environment", reference.name);
 }
 
 absl::Status not_found(const Reference& reference, std::string_view what) {

@@ -33,6 +33,12 @@ absl::Status check_scene_name(const Reference& reference);
 /// scenes/{scene}/{collection}/{id}.
 absl::StatusOr<std::string> scene_of_child(const Reference& reference, Collection collection);
 
+/// scenes/{scene}/environment
+std::string make_environment_name(std::string_view scene_name);
+
+/// The scene's name. INVALID_ARGUMENT when `reference` has not the form scenes/{scene}/environment.
+absl::StatusOr<std::string> scene_of_environment(const Reference& reference);
+
 /// NOT_FOUND for a well-formed name of nothing. `what` is "scene", "mesh", ... An unknown scene and one that the caller
 /// may not see look alike.
 absl::Status not_found(const Reference& reference, std::string_view what);

@@ -22,6 +22,7 @@
 namespace diaphane::scene {
 
 using SnapshotPtr = std::shared_ptr<const SceneSnapshot>;
+using EnvironmentPtr = std::shared_ptr<const Environment>;
 
 /// What is given replaces what was there.
 struct ScenePatch {
@@ -45,6 +46,11 @@ struct LightPatch {
   std::optional<glm::vec3> position;
   std::optional<glm::vec3> intensity_w_sr;
   std::optional<LightKind> kind;
+};
+
+struct EnvironmentPatch {
+  std::optional<float> rotation_deg;
+  std::optional<float> intensity;
 };
 
 struct MeshPatch {
@@ -124,8 +130,18 @@ class SceneStore {
                                                   std::shared_ptr<const geometry::MeshShape> shape,
                                                   Reservation reservation);
 
+  /// Reserves what a map of that size takes while it is read and analysed.
+  absl::StatusOr<Reservation> reserve_environment(const Reference& parent, uint32_t width_px, uint32_t height_px);
+  /// In place of the one that the scene had. `reservation` is from reserve_environment for this size.
+  absl::StatusOr<Changed<EnvironmentPtr>> set_environment(const Reference& parent, Environment environment,
+                                                          Reservation reservation);
+  absl::StatusOr<EnvironmentPtr> environment(const Reference& environment) const;
+  absl::StatusOr<Changed<EnvironmentPtr>> update_environment(const Reference& environment,
+                                                             const EnvironmentPatch& patch);
+  absl::StatusOr<uint64_t> delete_environment(const Reference& environment);
+
   const SceneLimits& limits() const { return limits_; }
-  /// Of all meshes and of uploads in flight.
+  /// Of all meshes, environments and uploads in flight.
   uint64_t mesh_bytes() const { return budget_.used_bytes(); }
 
  private:

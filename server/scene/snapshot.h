@@ -11,6 +11,7 @@
 #include "geometry/topology.h"
 #include "glm/mat4x4.hpp"
 #include "glm/vec3.hpp"
+#include "optics/environment.h"
 #include "optics/material.h"
 
 namespace diaphane::scene {
@@ -50,6 +51,15 @@ struct Light {
   LightKind kind;
 };
 
+/// Light from all around.
+struct Environment {
+  std::string name;                                       ///< scenes/{scene}/environment
+  std::shared_ptr<const optics::LatLongMap> map;          ///< as it was given
+  std::shared_ptr<const optics::EnvironmentLight> light;  ///< what it is to bodies
+  float rotation_deg = 0;                                 ///< about +y, counter-clockwise seen from above
+  float intensity = 1;                                    ///< multiplies both
+};
+
 struct Mesh {
   std::string name;  ///< scenes/{scene}/meshes/{mesh}
   std::string material;
@@ -68,6 +78,7 @@ struct SceneSnapshot {
   std::vector<std::shared_ptr<const Mesh>> meshes;
   std::vector<Material> materials;
   std::vector<Light> lights;
+  std::shared_ptr<const Environment> environment;  ///< null: none
 };
 
 }  // namespace diaphane::scene

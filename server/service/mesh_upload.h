@@ -12,6 +12,7 @@ class MeshUpload {
  public:
   using Request = v1::UploadMeshRequest;
   using Header = v1::MeshHeader;
+  using Response = v1::MeshResponse;
   static constexpr std::string_view kMethod = "UploadMesh";
 
   explicit MeshUpload(scene::SceneStore& store) : store_(store) {}

@@ -12,6 +12,7 @@ class PositionsUpload {
  public:
   using Request = v1::UpdatePositionsRequest;
   using Header = v1::PositionsHeader;
+  using Response = v1::MeshResponse;
   static constexpr std::string_view kMethod = "UpdatePositions";
 
   explicit PositionsUpload(scene::SceneStore& store) : store_(store) {}

@@ -48,6 +48,11 @@ class SceneService final : public v1::SceneService::CallbackService {
   Unary* DeleteMesh(Context*, const v1::DeleteMeshRequest*, v1::DeleteResponse*) override;
   Reads<v1::UpdatePositionsRequest>* UpdatePositions(Context*, v1::MeshResponse*) override;
 
+  Reads<v1::UploadEnvironmentRequest>* UploadEnvironment(Context*, v1::EnvironmentResponse*) override;
+  Unary* GetEnvironment(Context*, const v1::GetEnvironmentRequest*, v1::Environment*) override;
+  Unary* UpdateEnvironment(Context*, const v1::UpdateEnvironmentRequest*, v1::EnvironmentResponse*) override;
+  Unary* DeleteEnvironment(Context*, const v1::DeleteEnvironmentRequest*, v1::DeleteResponse*) override;
+
   const ServiceLimits limits_;
   scene::SceneStore& store_;
   base::WorkerPool& workers_;

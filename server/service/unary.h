@@ -9,6 +9,7 @@
 #include "grpcpp/support/server_callback.h"
 // fill() looks for to_proto() among these.
 #include "service/convert/deletion.h"
+#include "service/convert/environment.h"
 #include "service/convert/light.h"
 #include "service/convert/material.h"
 #include "service/convert/mesh.h"

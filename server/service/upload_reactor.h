@@ -31,14 +31,14 @@ struct UploadServices {
   ReplyMemory& replies;
 };
 
-/// One call of `Upload` (MeshUpload, PositionsUpload). Reads on gRPC's threads, hands the whole payload to a worker,
-/// and finishes exactly once: from a read, a cancellation, the silence alarm or the worker, whichever comes first; but
-/// only the worker finishes while it works. Deletes itself.
+/// One call of `Upload` (MeshUpload, PositionsUpload, EnvironmentUpload). Reads on gRPC's threads, hands the whole
+/// payload to a worker, and finishes exactly once: from a read, a cancellation, the silence alarm or the worker,
+/// whichever comes first; but only the worker finishes while it works. Deletes itself.
 template <typename Upload>
 class UploadReactor final : public grpc::ServerReadReactor<typename Upload::Request> {
  public:
   UploadReactor(std::unique_ptr<Upload> upload, const UploadServices& services, grpc::CallbackServerContext* context,
-                v1::MeshResponse* response)
+                typename Upload::Response* response)
       : services_(services), context_(context), response_(response), upload_(std::move(upload)) {
     watch_silence();
     this->StartRead(&request_);
@@ -175,7 +175,7 @@ class UploadReactor final : public grpc::ServerReadReactor<typename Upload::Requ
 
   const UploadServices services_;
   grpc::CallbackServerContext* const context_;
-  v1::MeshResponse* const response_;
+  typename Upload::Response* const response_;
 
   // Of the reading thread, then of the worker.
   std::unique_ptr<Upload> upload_;

@@ -193,7 +193,7 @@ int main(int argc, char** argv) {
   app.add_option("--technique", table.technique, "one of the two alone")->check(CLI::IsMember({"integral", "paper"}));
   app.add_option("--meshes", table.meshes, "bunny hand goathead fertility torus cup plate cube")->delimiter(',');
   app.add_option("--materials", table.materials, "presets")->delimiter(',');
-  app.add_option("--lights", table.lights, "front back two")->delimiter(',');
+  app.add_option("--lights", table.lights, "front back two, or environments (see bench environment)")->delimiter(',');
   app.add_option("--quality", settings.quality, "of the integral")->transform(CLI::CheckedTransformer(qualities));
   app.add_option("--openings", settings.openings, "GROUPS,VERTICES in place of a quality, at points")
       ->delimiter(',')

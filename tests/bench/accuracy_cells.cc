@@ -21,7 +21,8 @@ using testing::Mesh;
 float smallest(const glm::vec3& v) { return std::min({v.x, v.y, v.z}); }
 
 std::vector<glm::vec3> truth_of(const testing::Cell& cell, const std::vector<glm::vec3>& points_mm,
-                                const std::vector<glm::vec3>& normals, const AccuracySettings& settings, const char* kind) {
+                                const std::vector<glm::vec3>& normals, const AccuracySettings& settings,
+                                const char* kind) {
   const std::string path = settings.cache + "/" + cell.mesh_name + "." + cell.material_name + "." + cell.light_name +
                            "." + kind + std::to_string(points_mm.size());
   std::vector<glm::vec3> truth(points_mm.size());

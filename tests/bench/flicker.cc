@@ -74,7 +74,8 @@ Frame measure(const testing::Cell& cell, const testing::Mesh& pose, const testin
     normals.push_back(sights.of_pixel[pixels[k]]->normal);
     frame.integral[k] = picture[pixels[k]];
   }
-  const std::vector<glm::vec3> truth = testing::true_radiosity(pose, cell.material, cell.irradiance, points_mm, normals);
+  const std::vector<glm::vec3> truth =
+      testing::true_radiosity(pose, cell.material, cell.irradiance, points_mm, normals);
   for (size_t i = 0; i < slots.size(); ++i) {
     const float cosine = sights.of_pixel[pixels[slots[i]]]->cosine;
     frame.reference[slots[i]] =

@@ -40,11 +40,6 @@ bool is_accepted(const absl::StatusOr<T>& value) {
   return value.ok();
 }
 
-bool is_accepted(const absl::Status& status) {
-  if (!status.ok()) check_refusal(status);
-  return status.ok();
-}
-
 void convert(const v1::RenderFrameRequest& request, std::string_view) {
   const auto task = service::from_proto(request, kMostPixels);
   if (!is_accepted(task)) return;

@@ -1,8 +1,10 @@
 #include "tests/support/cells.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <stdexcept>
 
+#include "diaphane/environment.h"
 #include "diffusion/reference.h"
 #include "optics/presets.h"
 
@@ -56,9 +58,32 @@ optics::Coefficients cell_material(const std::string& name) {
   return material;
 }
 
+std::vector<std::string> environment_names() {
+  std::vector<std::string> names;
+  if (!std::filesystem::is_directory(shared_path("data/env"))) return names;
+  for (const auto& entry : std::filesystem::directory_iterator(shared_path("data/env"))) {
+    if (entry.path().extension() == ".hdr") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+optics::LatLongMap environment_map(const std::string& name) {
+  const auto file = read_environment_file(shared_path("data/env/" + name + ".hdr"));
+  if (!file.ok()) throw std::runtime_error(std::string(file.status().message()));
+  optics::LatLongMap map{file->width_px, file->height_px, {}};
+  for (const Rgb& pixel : file->radiance) map.radiance.emplace_back(pixel.r, pixel.g, pixel.b);
+  return map;
+}
+
 Cell make_cell(const std::string& mesh, const std::string& material, const std::string& light, float extent_mm) {
-  Cell cell{mesh, material, light, cell_mesh(mesh, extent_mm), cell_material(material),
-            cell_lights(light, extent_mm), {}};
+  Cell cell{mesh, material, light, cell_mesh(mesh, extent_mm), cell_material(material), {}, {}};
+  const std::vector<std::string> environments = environment_names();
+  if (std::find(environments.begin(), environments.end(), light) != environments.end()) {
+    cell.irradiance = irradiance_of(optics::analyse(environment_map(light)), cell.material.refractive_index);
+    return cell;
+  }
+  cell.lights = cell_lights(light, extent_mm);
   cell.irradiance = irradiance_of(cell.lights, cell.material.refractive_index);
   return cell;
 }
@@ -67,9 +92,8 @@ std::vector<glm::vec3> true_radiosity(const Mesh& mesh, const optics::Coefficien
                                       const diffusion::IrradianceAt& irradiance,
                                       const std::vector<glm::vec3>& points_mm, const std::vector<glm::vec3>& normals) {
   const diffusion::ReferenceKernel kernel = diffusion::reference_kernel(optics::make_profile(material));
-  const diffusion::SurfelOptions sampling{.splits = mesh.triangles.size() > 100000 ? 1u : 2u,
-                                          .spacing_mm = kernel.spacing_mm,
-                                          .largest_splits = 200};
+  const diffusion::SurfelOptions sampling{
+      .splits = mesh.triangles.size() > 100000 ? 1u : 2u, .spacing_mm = kernel.spacing_mm, .largest_splits = 200};
   const diffusion::Surfels surfels =
       diffusion::sample_surface(mesh.triangles, mesh.positions_mm, mesh.normals, irradiance, sampling);
   std::vector<glm::vec3> radiosity = *diffusion::reference_radiosity(kernel.spread, surfels, points_mm);

@@ -34,12 +34,18 @@ struct Cell {
   std::vector<PointLight> lights;
   diffusion::IrradianceAt irradiance;
 };
+/// The maps of light at hand, by file name without extension; none without the shared data.
+std::vector<std::string> environment_names();
+/// Throws std::runtime_error where there is none of that name.
+optics::LatLongMap environment_map(const std::string& name);
+
+/// `light` is one of kCellLights, or an environment's name: then the cell has no lights, but its irradiance.
 Cell make_cell(const std::string& mesh, const std::string& material, const std::string& light, float extent_mm);
 
-/// B of brute force at points of a surface with their normals, W·mm⁻², over surfels of half the shortest mean free path or finer.
+/// B of brute force at points of a surface with their normals, W·mm⁻², over surfels of half the shortest mean free path
+/// or finer.
 std::vector<glm::vec3> true_radiosity(const Mesh& mesh, const optics::Coefficients& material,
                                       const diffusion::IrradianceAt& irradiance,
-                                      const std::vector<glm::vec3>& points_mm,
-                                      const std::vector<glm::vec3>& normals);
+                                      const std::vector<glm::vec3>& points_mm, const std::vector<glm::vec3>& normals);
 
 }  // namespace diaphane::testing

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "glm/common.hpp"
 #include "glm/geometric.hpp"
 #include "optics/dipole.h"
 
@@ -17,6 +18,18 @@ diffusion::IrradianceAt irradiance_of(std::vector<PointLight> lights, float refr
       const float distance2 = glm::dot(way, way);
       const float cosine = std::max(0.0f, glm::dot(normal, way) / std::sqrt(distance2));
       sum += light.intensity_w_sr * (optics::fresnel_transmittance(refractive_index, cosine) * cosine / distance2);
+    }
+    return sum;
+  };
+}
+
+diffusion::IrradianceAt irradiance_of(optics::EnvironmentLight light, float refractive_index) {
+  const optics::Harmonics around = optics::irradiance_harmonics(light.radiance, refractive_index);
+  return [light = std::move(light), around, refractive_index](const glm::vec3&, const glm::vec3& normal) {
+    glm::vec3 sum = glm::max(optics::evaluate(around, normal), glm::vec3(0));
+    for (const optics::EnvironmentLamp& lamp : light.lamps) {
+      const float cosine = std::max(0.0f, -glm::dot(normal, lamp.direction));
+      sum += cosine * optics::fresnel_transmittance(refractive_index, cosine) * lamp.irradiance;
     }
     return sum;
   };

@@ -7,6 +7,7 @@
 #include "diffusion/surface_topology.h"
 #include "diffusion/surfels.h"
 #include "glm/vec3.hpp"
+#include "optics/environment.h"
 
 namespace diaphane::testing {
 
@@ -17,6 +18,9 @@ struct PointLight {
 
 /// E = Σ I·Ft·cos/d², unshadowed.
 diffusion::IrradianceAt irradiance_of(std::vector<PointLight> lights, float refractive_index);
+
+/// E of an environment and its lamps, unshadowed.
+diffusion::IrradianceAt irradiance_of(optics::EnvironmentLight light, float refractive_index);
 
 struct SurfaceIrradiance {
   std::vector<glm::vec3> at_triangles;

@@ -12,6 +12,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "diaphane/environment.h"
 #include "diaphane/mesh_data.h"
 #include "diaphane/render_options.h"
 #include "diaphane/values.h"
@@ -43,6 +44,7 @@ struct SceneInfo {
   uint32_t mesh_count = 0;
   uint32_t material_count = 0;
   uint32_t light_count = 0;
+  bool has_environment = false;
 };
 
 struct MaterialInfo {
@@ -104,6 +106,13 @@ class Scene {
   absl::StatusOr<LightHandle> add_light(const Light& light) const;
   absl::StatusOr<uint64_t> update_light(const LightHandle& handle, const Light& light) const;
   absl::StatusOr<uint64_t> remove_light(const LightHandle& handle) const;
+
+  /// Uploads light from all around, in place of what the scene had. Lamps in it are told apart by the server and cast
+  /// shadows. Errors: INVALID_ARGUMENT a size, pixel or option out of range; RESOURCE_EXHAUSTED past a limit.
+  absl::StatusOr<uint64_t> set_environment(const EnvironmentMap& map, const EnvironmentOptions& options = {}) const;
+  /// Turns it, or changes its strength. NOT_FOUND where the scene has none.
+  absl::StatusOr<uint64_t> update_environment(const EnvironmentOptions& options) const;
+  absl::StatusOr<uint64_t> remove_environment() const;
 
   /// Uploads a mesh, its scene_from_mesh included, in chunks of at most 1 MiB.
   ///

@@ -70,6 +70,34 @@ TEST_F(CliWithServerTest, EveryFormatIsWhatItsNameSays) {
   EXPECT_THAT(read_file(folder_ / "x.exr"), StartsWith("\x76\x2f\x31\x01"));
 }
 
+TEST_F(CliWithServerTest, EnvironmentsLightInPlaceOfTheKeyLightAndTurn) {
+  // Red from +x, the right half of the map; what is left is dark.
+  std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 4\n";
+  for (int row = 0; row < 4; ++row) {
+    hdr += std::string("\x01\x01\x00\x7c", 4) + std::string("\x01\x01\x00\x7c", 4);
+    hdr += std::string("\xff\x10\x10\x80", 4) + std::string("\xff\x10\x10\x80", 4);
+  }
+  write_file(folder_ / "red.hdr", hdr);
+  const auto with = [&](const std::string& output, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"-o", output, "--environment", "red.hdr"};
+    words.insert(words.end(), more.begin(), more.end());
+    return with_server(render(words));
+  };
+  const Finished lit = run(with("a.png", {}));
+  ASSERT_EQ(lit.exit_code, 0) << lit.err;
+  ASSERT_EQ(run(with("b.png", {"--environment-rotation", "180"})).exit_code, 0);
+  ASSERT_EQ(run(with("c.png", {"--environment-rotation", "360"})).exit_code, 0);
+  EXPECT_NE(read_file(folder_ / "a.png"), read_file(folder_ / "b.png"));
+  for (const char* technique : {"paper", "lambert"}) {
+    EXPECT_EQ(run(with("d.png", {"--technique", technique})).exit_code, 0) << technique;
+  }
+  write_file(folder_ / "broken.hdr", hdr.substr(0, 60));
+  EXPECT_THAT(refusal(5, with_server(render({"-o", "x.png", "--environment", "broken.hdr"}))), HasSubstr("broken.hdr"));
+  EXPECT_THAT(refusal(4, with("x.png", {"--environment-intensity", "-1"})), HasSubstr("environment.intensity"));
+  EXPECT_THAT(refusal(2, with_server(render({"-o", "x.png", "--environment-rotation", "3"}))),
+              HasSubstr("--environment"));
+}
+
 TEST_F(CliWithServerTest, RefusalsOfTheServerExitWithFourAndNameTheField) {
   EXPECT_THAT(refusal(4, with_server(render({"-o", "x.png", "--material", "gold"}))), HasSubstr("gold"));
   EXPECT_THAT(refusal(4, with_server(render({"-o", "x.png", "--material", "gold", "--ior", "1.4"}))),

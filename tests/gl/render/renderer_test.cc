@@ -354,7 +354,8 @@ TEST_F(Renderer, SamplesLeaveExtraChannelsAtThePixelsCentre) {
   const auto three = std::get<base::ImageF>(render(request).image).values;
   ASSERT_EQ(one.size(), three.size());
   for (size_t i = 0; i < one.size(); ++i) {
-    if (i % 8 >= 4) ASSERT_EQ(one[i], three[i]) << i;
+    if (i % 8 < 4) continue;
+    ASSERT_EQ(one[i], three[i]) << i;
   }
 }
 
@@ -365,7 +366,8 @@ TEST_F(Renderer, DevelopsAsTheDriverStores) {
   request.settings.background = glm::vec3(0);
   const auto developed = std::get<base::Image8>(render(request).image).rgba;
   for (size_t i = 0; i < stored.size(); ++i) {
-    if (i % 4 != 3) ASSERT_NEAR(stored[i], developed[i], 1) << i;
+    if (i % 4 == 3) continue;
+    ASSERT_NEAR(stored[i], developed[i], 1) << i;
   }
 }
 

@@ -1,0 +1,164 @@
+// Frames of scenes in an environment.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <functional>
+
+#include "glm/gtc/matrix_transform.hpp"
+#include "glm/trigonometric.hpp"
+#include "render/ambient.h"
+#include "render/gl_renderer.h"
+#include "tests/gl/render/scenes.h"
+
+namespace diaphane::render {
+namespace {
+
+class EnvironmentFrames : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    auto renderer = make_gl_renderer({.warm_all = false});
+    ASSERT_TRUE(renderer.ok()) << renderer.status();
+    renderer_ = renderer->release();
+  }
+  static void TearDownTestSuite() {
+    delete renderer_;
+    renderer_ = nullptr;
+  }
+
+  static std::shared_ptr<const scene::Environment> environment_of(
+      const std::function<glm::vec3(const glm::vec3&)>& radiance, float rotation_deg = 0, float intensity = 1) {
+    optics::LatLongMap map{128, 64, {}};
+    for (uint32_t y = 0; y < map.height_px; ++y) {
+      for (uint32_t x = 0; x < map.width_px; ++x) map.radiance.push_back(radiance(map.direction(x, y)));
+    }
+    auto light = std::make_shared<const optics::EnvironmentLight>(optics::analyse(map));
+    return std::make_shared<const scene::Environment>(scene::Environment{
+        "e", std::make_shared<const optics::LatLongMap>(std::move(map)), std::move(light), rotation_deg, intensity});
+  }
+
+  static FrameRequest request_of(std::shared_ptr<const scene::SceneSnapshot> scene, Technique technique) {
+    FrameRequest request;
+    request.scene = std::move(scene);
+    request.camera = {{3, 10, 25}, {0, 0, 0}, {0, 1, 0}, 30};
+    request.width_px = 48;
+    request.height_px = 32;
+    request.settings.technique = technique;
+    request.settings.paper.face_size_px = 64;
+    request.format = PixelFormat::kLinearFloat;
+    return request;
+  }
+
+  /// R G B A and the channels of every pixel.
+  static std::vector<float> render(const FrameRequest& request) {
+    auto frame = renderer_->render(request, std::atomic<bool>(false));
+    if (!frame.ok()) {
+      ADD_FAILURE() << frame.status();
+      return {};
+    }
+    return std::get<base::ImageF>(frame->image).values;
+  }
+
+  static inline FrameRenderer* renderer_ = nullptr;
+};
+
+TEST_F(EnvironmentFrames, OfOneRadianceEnterEverywhereAlike) {
+  auto scene = make_scene(make_box({10, 10, 10}, 8), "marble");  // η 1.5
+  scene->environment = environment_of([](const glm::vec3&) { return glm::vec3(3, 2, 1); }, 0, 0.5f);
+  for (const Technique technique : {Technique::kIntegral, Technique::kPaper, Technique::kReference}) {
+    FrameRequest request = request_of(scene, technique);
+    request.channels = {Channel::kIrradiance};
+    const std::vector<float> values = render(request);
+    size_t shown = 0;
+    for (size_t i = 0; i < values.size(); i += 7) {
+      if (values[i + 3] == 0) continue;
+      ++shown;
+      ASSERT_NEAR(values[i + 4], 1.5f * 2.8533f, 0.01f);
+      ASSERT_NEAR(values[i + 6], 0.5f * 2.8533f, 0.004f);
+    }
+    EXPECT_GT(shown, 100u);
+  }
+}
+
+TEST_F(EnvironmentFrames, LightLambertWithoutFresnel) {
+  auto scene = make_scene(make_box({10, 10, 10}, 4), "marble");
+  scene->environment = environment_of([](const glm::vec3&) { return glm::vec3(1); });
+  FrameRequest request = request_of(scene, Technique::kLambert);
+  request.channels = {Channel::kIrradiance};
+  const std::vector<float> values = render(request);
+  EXPECT_NEAR(values[7 * (16 * 48 + 24) + 4], 3.1416f, 0.01f);
+}
+
+glm::vec3 sky_with_a_sun(const glm::vec3& d) {
+  const bool sun = glm::dot(d, glm::normalize(glm::vec3(0.5f, 0.7f, 0.5f))) > 0.995f;
+  return glm::vec3(0.2f, 0.3f, 0.5f + 0.3f * d.y) + (sun ? glm::vec3(90, 80, 70) : glm::vec3(0));
+}
+
+TEST_F(EnvironmentFrames, StayTheSameWhenMapAndSceneTurnTogether) {
+  auto scene = make_scene(make_box({10, 6, 8}, 16), "skin1");
+  scene->environment = environment_of(sky_with_a_sun);
+  ASSERT_EQ(scene->environment->light->lamps.size(), 1u);
+  constexpr float kTurn_deg = 67;
+  auto turned = std::make_shared<scene::SceneSnapshot>(*scene);
+  auto mesh = std::make_shared<scene::Mesh>(*scene->meshes[0]);
+  mesh->scene_from_mesh = glm::rotate(glm::mat4(1), glm::radians(kTurn_deg), glm::vec3(0, 1, 0));
+  turned->meshes[0] = std::move(mesh);
+  auto environment = std::make_shared<scene::Environment>(*scene->environment);
+  environment->rotation_deg = kTurn_deg;
+  turned->environment = std::move(environment);
+  for (const Technique technique : {Technique::kIntegral, Technique::kLambert}) {
+    const FrameRequest request = request_of(scene, technique);
+    FrameRequest other = request;
+    other.scene = turned;
+    other.camera.eye = rotated_about_y(request.camera.eye, kTurn_deg);
+    const std::vector<float> before = render(request), after = render(other);
+    double squares = 0, sum = 0;
+    for (size_t i = 0; i < before.size(); ++i) {
+      squares += std::pow(before[i] - after[i], 2);
+      sum += before[i];
+    }
+    const auto count = static_cast<double>(before.size());
+    EXPECT_LT(std::sqrt(squares / count), 0.003 * sum / count);
+  }
+}
+
+TEST_F(EnvironmentFrames, TurnWithTheMapAlone) {
+  auto scene = make_scene(make_box({10, 10, 10}, 8), "marble");
+  scene->environment = environment_of(sky_with_a_sun);
+  const FrameRequest request = request_of(scene, Technique::kIntegral);
+  const std::vector<float> before = render(request);
+  auto turned = std::make_shared<scene::SceneSnapshot>(*scene);
+  auto environment = std::make_shared<scene::Environment>(*scene->environment);
+  environment->rotation_deg = 180;
+  turned->environment = std::move(environment);
+  FrameRequest other = request;
+  other.scene = turned;
+  const size_t centre = 4 * (16 * 48 + 24);
+  EXPECT_LT(render(other)[centre], 0.7f * before[centre]);
+  // And back again, to the byte.
+  EXPECT_EQ(render(request), before);
+}
+
+TEST_F(EnvironmentFrames, HaveTheShadowOfTheirSun) {
+  auto scene = make_scene(make_box({10, 10, 10}, 8), "marble");
+  scene->environment = environment_of([](const glm::vec3& d) { return glm::vec3(d.y > 0.995f ? 100.0f : 0.1f); });
+  ASSERT_EQ(scene->environment->light->lamps.size(), 1u);
+  auto hidden = std::make_shared<scene::SceneSnapshot>(*scene);
+  const auto roof = make_scene(make_plane(60, 4), "marble");
+  auto mesh = std::make_shared<scene::Mesh>(*roof->meshes[0]);
+  mesh->name = "roof";
+  mesh->scene_from_mesh =
+      glm::rotate(glm::translate(glm::mat4(1), glm::vec3(0, 40, 0)), glm::radians(90.0f), glm::vec3(1, 0, 0));
+  hidden->meshes.push_back(std::move(mesh));
+  FrameRequest request = request_of(scene, Technique::kIntegral);
+  request.channels = {Channel::kIrradiance};
+  request.camera.eye = {3, 30, 15};
+  const size_t centre = 7 * (16 * 48 + 24) + 4;
+  const float in_the_sun = render(request)[centre];
+  request.scene = hidden;
+  const float in_the_shade = render(request)[centre];
+  EXPECT_GT(in_the_sun, 3 * in_the_shade);
+  EXPECT_GT(in_the_shade, 0.2f);
+}
+
+}  // namespace
+}  // namespace diaphane::render

@@ -36,6 +36,33 @@ TEST_F(CliWithServerTest, SceneFileAndOptionsMakeTheSameBytes) {
   EXPECT_TRUE(read_file(folder_ / "a.png") == read_file(folder_ / "b.png"));
 }
 
+TEST_F(CliWithServerTest, MaterialsByColourMeanTheSameInASceneFileAndAsOptions) {
+  write_file(folder_ / "scene.json", R"({"scene": {"millimetres_per_unit": 10},
+    "materials": [{"name": "body", "profile": "PROFILE_BETTER_DIPOLE", "diffuse_color":
+        {"color": {"x": 0.9, "y": 0.5, "z": 0.01}, "mean_free_path_mm": {"x": 1, "y": 1, "z": 1}}}],
+    "meshes": [{"file": "cube.obj", "material": "body"}], "settings": {"slab_correction": true},
+    "lights": [{"point": {"position": {"x": 1, "y": 2, "z": 3}, "intensity": {"x": 900, "y": 800, "z": 700}}}],
+    "camera": {"eye": {"x": 2, "y": 2, "z": 5}}, "size": {"width_px": 32, "height_px": 24}})");
+  const Finished from_file = run(with_server({"render", "--scene", "scene.json", "-o", "a.png"}));
+  ASSERT_EQ(from_file.exit_code, 0) << from_file.err;
+  EXPECT_THAT(from_file.err, HasSubstr("warning: material: blue scatters too little"));
+  const std::vector<std::string> options = {"render", "cube.obj", "-o", "b.png", "--mm-per-unit", "10",
+                                            "--point-light", "1,2,3,900,800,700", "--eye", "2,2,5", "--size", "32x24",
+                                            "--diffuse-color", "0.9,0.5,0.01", "--mean-free-path", "1"};
+  const auto with = [&](std::initializer_list<std::string> more) {
+    std::vector<std::string> all = options;
+    all.insert(all.end(), more);
+    return run(with_server(all));
+  };
+  const Finished from_options = with({"--profile", "better-dipole", "--slab-correction"});
+  ASSERT_EQ(from_options.exit_code, 0) << from_options.err;
+  EXPECT_TRUE(read_file(folder_ / "a.png") == read_file(folder_ / "b.png"));
+  ASSERT_EQ(with({"--profile", "better-dipole"}).exit_code, 0);
+  EXPECT_FALSE(read_file(folder_ / "a.png") == read_file(folder_ / "b.png")) << "the slab correction shows";
+  ASSERT_EQ(with({"--profile", "dipole", "--slab-correction"}).exit_code, 0);
+  EXPECT_FALSE(read_file(folder_ / "a.png") == read_file(folder_ / "b.png")) << "the profile shows";
+}
+
 TEST_F(CliWithServerTest, EveryFormatIsWhatItsNameSays) {
   ASSERT_EQ(run(with_server(render({"-o", "x.jpg"}))).exit_code, 0);
   EXPECT_THAT(read_file(folder_ / "x.jpg"), StartsWith("\xff\xd8\xff"));

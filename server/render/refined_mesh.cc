@@ -18,7 +18,7 @@ constexpr uint32_t kMaxVertices = 100'000;
 /// The smallest spacing over the distance on which the kernel is smooth: what linear interpolation across triangles
 /// leaves of the error falls with it, and so does flicker where a pose stretches triangles (docs/integral.md).
 float share_of_smooth_distance(diffusion::Quality quality) {
-  return quality == diffusion::Quality::kFine ? 0.35f : 1.0f;
+  return quality == diffusion::Quality::kFine ? 0.38f : 1.0f;
 }
 
 /// The next quarter of an octave below, so that small changes do not split anew.

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "CLI/CLI.hpp"
+#include "fmt/format.h"
 #include "glm/geometric.hpp"
 #include "render/gl_renderer.h"
 #include "tests/support/cells.h"
@@ -24,9 +25,10 @@ struct Settings {
   std::string mesh = "bunny", material = "marble", light = "front";
   diffusion::Quality quality = diffusion::Quality::kFine;
   int frames = 60;
+  int every = 1;  ///< of the pairs of frames, the ones looked at
   uint32_t size_px = 160;
   size_t pixels = 1500;
-  std::string json_path;
+  std::string cache, json_path;
 };
 
 constexpr float kExtentMm = 20;
@@ -59,8 +61,23 @@ std::vector<size_t> choose_pixels(const testing::Sights& largest, size_t count) 
   return pixels;
 }
 
+/// B of brute force; kept in `path` from run to run where that is not empty.
+std::vector<glm::vec3> truth_of(const testing::Cell& cell, const testing::Mesh& pose,
+                                const std::vector<glm::vec3>& points_mm, const std::vector<glm::vec3>& normals,
+                                const std::string& path) {
+  std::vector<glm::vec3> truth(points_mm.size());
+  const auto bytes = static_cast<std::streamsize>(truth.size() * sizeof(glm::vec3));
+  if (!path.empty()) {
+    std::ifstream file(path, std::ios::binary);
+    if (file && file.read(reinterpret_cast<char*>(truth.data()), bytes)) return truth;
+  }
+  truth = testing::true_radiosity(pose, cell.material, cell.irradiance, points_mm, normals);
+  if (!path.empty()) std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(truth.data()), bytes);
+  return truth;
+}
+
 Frame measure(const testing::Cell& cell, const testing::Mesh& pose, const testing::Sights& sights,
-              const std::vector<glm::vec3>& picture, const std::vector<size_t>& pixels) {
+              const std::vector<glm::vec3>& picture, const std::vector<size_t>& pixels, const std::string& path) {
   Frame frame;
   std::vector<size_t> slots;
   std::vector<glm::vec3> points_mm, normals;
@@ -74,8 +91,7 @@ Frame measure(const testing::Cell& cell, const testing::Mesh& pose, const testin
     normals.push_back(sights.of_pixel[pixels[k]]->normal);
     frame.integral[k] = picture[pixels[k]];
   }
-  const std::vector<glm::vec3> truth =
-      testing::true_radiosity(pose, cell.material, cell.irradiance, points_mm, normals);
+  const std::vector<glm::vec3> truth = truth_of(cell, pose, points_mm, normals, path);
   for (size_t i = 0; i < slots.size(); ++i) {
     const float cosine = sights.of_pixel[pixels[slots[i]]]->cosine;
     frame.reference[slots[i]] =
@@ -115,6 +131,9 @@ int run(const Settings& settings) {
   Frame before;
   // Backwards, so that the first frame is the sphere, which covers every pixel that will be looked at.
   for (int i = settings.frames - 1; i >= 0; --i) {
+    const bool starts_pair = i < settings.frames - 1 && i % settings.every == 0;
+    const bool ends_pair = i > 0 && (i - 1) % settings.every == 0;
+    if (!starts_pair && !ends_pair && !pixels.empty()) continue;
     const float t = static_cast<float>(i) / static_cast<float>(std::max(settings.frames - 1, 1));
     const testing::Mesh pose = morphed(cell.mesh, radius_mm, t);
     const testing::Sights sights = testing::trace(pose, testing::MeshRays(pose), view);
@@ -122,8 +141,13 @@ int run(const Settings& settings) {
     const auto picture =
         testing::radiance_of(**renderer, testing::unshadowed_request(testing::with_pose(*rest, pose), view,
                                                                      render::Technique::kIntegral, settings.quality));
-    Frame after = measure(cell, pose, sights, picture, pixels);
-    if (i < settings.frames - 1) {
+    const std::string path = settings.cache.empty()
+                                 ? ""
+                                 : fmt::format("{}/{}.{}.{}.{}of{}.{}px.{}", settings.cache, settings.mesh,
+                                               settings.material, settings.light, i, settings.frames, settings.size_px,
+                                               pixels.size());
+    Frame after = measure(cell, pose, sights, picture, pixels, path);
+    if (starts_pair) {
       const size_t first = flicker.size();
       compare(before, after, flicker);
       auto& quarter = of_quarter[static_cast<size_t>(kQuarters * i / (settings.frames - 1))];
@@ -178,8 +202,10 @@ int main(int argc, char** argv) {
   app.add_option("--light", settings.light, "front back two");
   app.add_option("--quality", settings.quality)->transform(CLI::CheckedTransformer(qualities));
   app.add_option("--frames", settings.frames)->check(CLI::Range(2, 10000));
+  app.add_option("--every", settings.every, "of the pairs of frames, one in so many")->check(CLI::Range(1, 10000));
   app.add_option("--size", settings.size_px, "pixels a side")->check(CLI::Range(16, 2048));
   app.add_option("--pixels", settings.pixels, "that the reference is computed for")->check(CLI::Range(1, 1000000));
+  app.add_option("--cache", settings.cache, "folder that keeps brute force's answers from run to run");
   app.add_option("--json", settings.json_path, "file for the figures");
   CLI11_PARSE(app, argc, argv);
   try {

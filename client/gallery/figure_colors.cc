@@ -52,11 +52,12 @@ Material material_of(const Entry& entry) {
 absl::StatusOr<Section> figure_colors(const Studio& studio, const FigureOptions& options) {
   Section section{.id = "colors", .title = "Materials by colour"};
   section.paragraphs = {
-      fmt::format("Bodies {} mm high of which only the colour under even light and the mean free path l were given; the "
-                  "table has the coefficients that they came to. Above: five colours, l = 1 mm. Below: one colour at "
-                  "three l, and by the other two profiles. By the integral, one lamp on the upper left and a weaker "
-                  "one behind, one exposure.",
-                  kHeight_mm),
+      fmt::format(
+          "Bodies {} mm high of which only the colour under even light and the mean free path l were given; the "
+          "table has the coefficients that they came to. Above: five colours, l = 1 mm. Below: one colour at "
+          "three l, and by the other two profiles. By the integral, one lamp on the upper left and a weaker "
+          "one behind, one exposure.",
+          kHeight_mm),
       "Under an even light all bodies of the lower row would be of one colour. Under lamps a longer l carries light "
       "farther, from lit parts into dark ones and out of thin ones."};
   section.table = {{"", "colour", "l, mm", "profile", "σ's, mm⁻¹", "σa, mm⁻¹", "warnings"}};

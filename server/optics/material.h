@@ -17,18 +17,18 @@ struct PresetName {
 
 /// What the plane under even light looks like, and how far light goes.
 struct DiffuseColor {
-  glm::vec3 color{0.8f};            ///< diffuse reflectance, each 0..0.999
-  glm::vec3 mean_free_path_mm{1};   ///< l = 1/σ't, each 0.001..1000
-  float refractive_index = 1.3f;    ///< 1..3
+  glm::vec3 color{0.8f};           ///< diffuse reflectance, each 0..0.999
+  glm::vec3 mean_free_path_mm{1};  ///< l = 1/σ't, each 0.001..1000
+  float refractive_index = 1.3f;   ///< 1..3
 };
 
 /// KHR_materials_volume, with the draft scattering extensions' multiple-scattering colour.
 struct Volume {
-  glm::vec3 attenuation_color{1};    ///< what is left after the distance, each above 0, up to 1
+  glm::vec3 attenuation_color{1};     ///< what is left after the distance, each above 0, up to 1
   float attenuation_distance_mm = 1;  ///< 1e-6..1e6
-  glm::vec3 multiscatter_color{0};   ///< each 0..0.999
-  float scatter_anisotropy = 0;      ///< g, -0.99..0.99
-  float refractive_index = 1.5f;     ///< 1..3
+  glm::vec3 multiscatter_color{0};    ///< each 0..0.999
+  float scatter_anisotropy = 0;       ///< g, -0.99..0.99
+  float refractive_index = 1.5f;      ///< 1..3
 };
 
 using MaterialForm = std::variant<PresetName, Coefficients, DiffuseColor, Volume>;

@@ -53,8 +53,8 @@ ChannelProfile better_dipole(const Medium& medium) {
                          .smooth_mm = l / (1 + transport * l / 3)};
   // The two terms' fluences over σ, without the difference of large numbers where nothing is absorbed.
   const double between = transport > 0 ? -std::expm1(-transport * (image - l)) / transport : image - l;
-  profile.total = 2 * pi * std::exp(-transport * l) *
-                  (flux * (1 + std::exp(-transport * (image - l))) + fluence * between);
+  profile.total =
+      2 * pi * std::exp(-transport * l) * (flux * (1 + std::exp(-transport * (image - l))) + fluence * between);
   return profile;
 }
 

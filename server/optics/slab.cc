@@ -77,9 +77,8 @@ SlabGain slab_gain(const Coefficients& material, double thickness_mm) {
     const double sum = (right.reflected[c] + right.transmitted[c]) / (said.reflected[c] + said.transmitted[c]);
     // Both go to 0 with the square of the thickness, below which the faces cannot differ.
     const double difference = said.reflected[c] - said.transmitted[c];
-    const double contrast = difference > 1e-4 * said.reflected[c]
-                                ? (right.reflected[c] - right.transmitted[c]) / difference
-                                : sum;
+    const double contrast =
+        difference > 1e-4 * said.reflected[c] ? (right.reflected[c] - right.transmitted[c]) / difference : sum;
     gain.own[c] = static_cast<float>(0.5 * (sum + contrast));
     gain.opposite[c] = static_cast<float>(0.5 * (sum - contrast));
   }

@@ -15,8 +15,8 @@ struct SlabResponse {
 /// Diffusion theory's slab of thickness d ≥ 0 in mm: G of −Dφ″ + σaφ = q between the boundaries extrapolated by
 /// z_b = 2AD, in closed form, under light that enters along the normal. Its source is spread along the way,
 /// q = α'e^(−z/l)/l, instead of lying at z = l, so that it stays inside where the slab is thinner than that;
-/// what reaches the far face is reflected there once, by Fresnel at normal incidence. Scaled so that a thick slab reflects
-/// total_reflectance() of the material's profile. Thread-safe.
+/// what reaches the far face is reflected there once, by Fresnel at normal incidence. Scaled so that a thick slab
+/// reflects total_reflectance() of the material's profile. Thread-safe.
 SlabResponse slab_response(const Coefficients& material, double thickness_mm);
 
 /// What the surface integral says of the same slab: total_reflectance() through the same face, whatever the thickness,

@@ -27,8 +27,8 @@ struct BruteForceBody {
 };
 
 /// B, linear RGB, W·mm⁻², at each of `positions_mm` with `normals`: the sum over surfels at most half a mean free path
-/// apart (or a cap); see diffusion::reference_kernel(). `progress`, if any, is told the share done, 0..1, growing, by one thread at a time. Spread over all cores.
-/// Errors: CANCELLED once `cancelled` is seen set.
+/// apart (or a cap); see diffusion::reference_kernel(). `progress`, if any, is told the share done, 0..1, growing, by
+/// one thread at a time. Spread over all cores. Errors: CANCELLED once `cancelled` is seen set.
 absl::StatusOr<std::vector<glm::vec3>> brute_force_radiosity(const BruteForceBody& body,
                                                              std::span<const glm::vec3> positions_mm,
                                                              std::span<const glm::vec3> normals,

@@ -17,8 +17,8 @@
 
 namespace diaphane::render {
 
-/// Light on one mesh. Stages: normals, refit, irradiance, flux, gather, slab (where asked for); each sleeps while what it reads is the same.
-/// One thread calls; work is spread over all cores. The same bytes on any number of threads.
+/// Light on one mesh. Stages: normals, refit, irradiance, flux, gather, slab (where asked for); each sleeps while what
+/// it reads is the same. One thread calls; work is spread over all cores. The same bytes on any number of threads.
 class SurfaceLight {
  public:
   struct Inputs {
@@ -66,7 +66,7 @@ class SurfaceLight {
   Memo<std::tuple<uint64_t, std::vector<LightStorage>, Ambient, float, uint64_t>> light_reads_;
   Memo<std::tuple<uint64_t, uint64_t>> flux_reads_;  // shape, irradiance
   Memo<optics::Coefficients> material_reads_;
-  Memo<uint64_t> opposite_reads_;                                            // shape
+  Memo<uint64_t> opposite_reads_;  // shape
   Memo<optics::Coefficients> gain_reads_;
   Memo<std::tuple<uint64_t, optics::Coefficients, bool>> slab_reads_;  // gathered radiosity, material, asked for
   Memo<std::tuple<uint64_t, uint64_t, optics::Coefficients, diffusion::Quality>>

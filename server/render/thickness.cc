@@ -133,10 +133,9 @@ std::vector<OppositePoint> ThicknessField::find(std::span<const glm::vec3> point
       }
     }
   };
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, points_mm.size(), 256),
-                    [&](const tbb::blocked_range<size_t>& range) {
-                      for (size_t i = range.begin(); i != range.end(); ++i) find_one(i);
-                    });
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, points_mm.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t i = range.begin(); i != range.end(); ++i) find_one(i);
+  });
   return found;
 }
 

@@ -19,7 +19,7 @@ namespace diaphane::scene {
 struct Material {
   std::string name;  ///< scenes/{scene}/materials/{material}
   optics::MaterialForm form;
-  optics::Coefficients coefficients;  ///< what the form comes to, with the profile that was asked for
+  optics::Coefficients coefficients;    ///< what the form comes to, with the profile that was asked for
   std::vector<std::string> warnings{};  ///< what is doubtful about them, a sentence each
 };
 

@@ -141,11 +141,10 @@ int run(const Settings& settings) {
     const auto picture =
         testing::radiance_of(**renderer, testing::unshadowed_request(testing::with_pose(*rest, pose), view,
                                                                      render::Technique::kIntegral, settings.quality));
-    const std::string path = settings.cache.empty()
-                                 ? ""
-                                 : fmt::format("{}/{}.{}.{}.{}of{}.{}px.{}", settings.cache, settings.mesh,
-                                               settings.material, settings.light, i, settings.frames, settings.size_px,
-                                               pixels.size());
+    const std::string path = settings.cache.empty() ? ""
+                                                    : fmt::format("{}/{}.{}.{}.{}of{}.{}px.{}", settings.cache,
+                                                                  settings.mesh, settings.material, settings.light, i,
+                                                                  settings.frames, settings.size_px, pixels.size());
     Frame after = measure(cell, pose, sights, picture, pixels, path);
     if (starts_pair) {
       const size_t first = flicker.size();

@@ -116,12 +116,9 @@ std::vector<std::string> column_names() {
 nlohmann::json measure_row(const testing::Mesh& mesh, const std::string& file, const Settings& settings,
                            const std::string& shadows, const std::string& extra, render::FrameRenderer& renderer) {
   const Times times = measure(mesh, settings, shadows == "on", extra, renderer);
-  nlohmann::json row = {{"mesh", file},
-                        {"triangles", mesh.triangles.size()},
-                        {"shadows", shadows},
-                        {"extra", extra},
-                        {"simd_level", diffusion::simd_level()},
-                        {"threads", settings.threads.front()}};
+  nlohmann::json row = {
+      {"mesh", file},   {"triangles", mesh.triangles.size()},    {"shadows", shadows},
+      {"extra", extra}, {"simd_level", diffusion::simd_level()}, {"threads", settings.threads.front()}};
   std::printf("%-14.14s %7zu %-5s %-3s %-6.6s %2d |", file.c_str(), mesh.triangles.size(),
               diffusion::simd_level().c_str(), shadows.c_str(), extra.c_str(), settings.threads.front());
   for (const std::string& name : column_names()) {

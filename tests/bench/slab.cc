@@ -49,8 +49,10 @@ nlohmann::json measure(const std::string& name, const optics::Coefficients& mate
 int run(const Settings& settings) {
   std::printf(
       "Of the light that enters a slab evenly through one face, shares that leave after scattering: through that face\n"
-      "(R), through the other (T), and both. By a random walk of %d photons that enter along the normal; by the surface\n"
-      "integral at fine; by it with slab correction. d: thickness in mean free paths; off: R + T against the walk, %%.\n",
+      "(R), through the other (T), and both. By a random walk of %d photons that enter along the normal; by the "
+      "surface\n"
+      "integral at fine; by it with slab correction. d: thickness in mean free paths; off: R + T against the walk, "
+      "%%.\n",
       settings.walks);
   std::printf("%-12s   %6s %6s %7s | %6s %6s %6s | %6s %6s %6s %6s | %6s %6s %6s %6s\n", "material", "albedo", "d",
               "mm", "R", "T", "walk", "R", "T", "integ.", "off", "R", "T", "corr.", "off");

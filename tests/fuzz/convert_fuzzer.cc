@@ -82,9 +82,7 @@ void convert(const v1::CreateMaterialRequest& request, std::string_view) {
   require(c.refractive_index >= 1 && c.refractive_index <= 3, "an index of 1..3");
 }
 
-void convert(const v1::UpdateMaterialRequest& request, std::string_view) {
-  is_accepted(service::from_proto(request));
-}
+void convert(const v1::UpdateMaterialRequest& request, std::string_view) { is_accepted(service::from_proto(request)); }
 
 void convert(const v1::CreateSceneRequest& request, std::string_view) {
   const auto patch = service::from_proto(request.scene());

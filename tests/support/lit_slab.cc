@@ -27,10 +27,9 @@ LitSlab light_slab(const optics::Coefficients& material, float thickness_mm) {
   const glm::vec3 lit = slab.normals.front();
   diffusion::DipoleIntegral integral(
       diffusion::build_surface_topology(*geometry::build_topology(slab.positions_mm, slab.triangles)));
-  const SurfaceIrradiance light =
-      light_surface(integral.topology(), slab.positions_mm, slab.normals, [&](const auto&, const glm::vec3& normal) {
-        return glm::vec3(glm::dot(normal, lit) > 0 ? 1.0f : 0.0f);
-      });
+  const SurfaceIrradiance light = light_surface(
+      integral.topology(), slab.positions_mm, slab.normals,
+      [&](const auto&, const glm::vec3& normal) { return glm::vec3(glm::dot(normal, lit) > 0 ? 1.0f : 0.0f); });
   integral.update_positions(slab.positions_mm);
   integral.refit_geometry();
   integral.set_irradiance(light.at_triangles, light.at_vertices);

@@ -9,8 +9,8 @@ struct WalkedSlab {
   double unscattered;
 };
 
-/// `walks` photons in a slab of `thickness` mean free paths that scatters isotropically with the albedo `albedo` between
-/// Fresnel boundaries of index `refractive_index` (inside over outside). The same every time.
+/// `walks` photons in a slab of `thickness` mean free paths that scatters isotropically with the albedo `albedo`
+/// between Fresnel boundaries of index `refractive_index` (inside over outside). The same every time.
 WalkedSlab walk_slab(double albedo, double refractive_index, double thickness, int walks);
 
 }  // namespace diaphane::testing

@@ -38,8 +38,8 @@ struct LoadedFile {
 /// - STL: one mesh per solid, corners at bit-equal positions welded.
 /// - glTF: one mesh per primitive and node (and instance of EXT_mesh_gpu_instancing), placed by its scene_from_mesh (a
 ///   negative scale stays there), with the default morph weights applied. What has a skin comes posed by its joints at
-///   rest, in scene units. Draco's and meshoptimizer's compression is read. External buffers are opened only inside the file's own folder; images
-///   never.
+///   rest, in scene units. Draco's and meshoptimizer's compression is read. External buffers are opened only inside the
+///   file's own folder; images never.
 /// - Normals come as the file has them, of any length; (0, 0, 0) where it has none for that vertex.
 /// - Colours of vertices come as linear RGB, cut to 0..1 and white where a vertex has none: glTF's COLOR_0 and PLY's
 ///   floating-point ones are linear already; PLY's integers, OBJ's and OFF's are taken as sRGB (OBJ's and OFF's as

@@ -62,23 +62,22 @@ absl::StatusOr<optics::MaterialForm> all_ok(const Form& form, std::initializer_l
 absl::StatusOr<optics::MaterialForm> form_from_proto(const v1::Coefficients& message) {
   optics::Coefficients form{.absorption_mm = service::from_proto(message.absorption_mm()),
                             .reduced_scattering_mm = service::from_proto(message.reduced_scattering_mm())};
-  return all_ok(
-      form,
-      {check_range("material.coefficients.absorption_mm", message.absorption_mm(), 0, kLargestCoefficient),
-       check_above_zero("material.coefficients.reduced_scattering_mm", message.reduced_scattering_mm(),
-                        kLargestCoefficient),
-       set_refractive_index("material.coefficients.refractive_index", message.refractive_index(),
-                            &form.refractive_index)});
+  return all_ok(form,
+                {check_range("material.coefficients.absorption_mm", message.absorption_mm(), 0, kLargestCoefficient),
+                 check_above_zero("material.coefficients.reduced_scattering_mm", message.reduced_scattering_mm(),
+                                  kLargestCoefficient),
+                 set_refractive_index("material.coefficients.refractive_index", message.refractive_index(),
+                                      &form.refractive_index)});
 }
 
 absl::StatusOr<optics::MaterialForm> form_from_proto(const v1::DiffuseColor& message) {
   optics::DiffuseColor form{.color = service::from_proto(message.color()),
                             .mean_free_path_mm = service::from_proto(message.mean_free_path_mm())};
-  return all_ok(
-      form, {check_within("material.diffuse_color.color", message.color(), 0, kBrightest),
-             check_within("material.diffuse_color.mean_free_path_mm", message.mean_free_path_mm(), 0.001f, 1000),
-             set_refractive_index("material.diffuse_color.refractive_index", message.refractive_index(),
-                                  &form.refractive_index)});
+  return all_ok(form,
+                {check_within("material.diffuse_color.color", message.color(), 0, kBrightest),
+                 check_within("material.diffuse_color.mean_free_path_mm", message.mean_free_path_mm(), 0.001f, 1000),
+                 set_refractive_index("material.diffuse_color.refractive_index", message.refractive_index(),
+                                      &form.refractive_index)});
 }
 
 absl::Status check_scatters(const v1::Vec3& color) {

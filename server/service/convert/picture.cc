@@ -25,8 +25,7 @@ absl::StatusOr<render::ToneMapping> from_proto(v1::ToneMapping tone_mapping) {
 
 absl::StatusOr<std::optional<glm::vec3>> from_proto(const v1::Background& message) {
   if (message.has_environment() && message.environment()) {
-    return base::field_error(absl::StatusCode::kUnimplemented,
-                             {"settings.background.environment", "true", "false"});
+    return base::field_error(absl::StatusCode::kUnimplemented, {"settings.background.environment", "true", "false"});
   }
   if (!message.has_color()) return std::optional<glm::vec3>();
   absl::Status color = check_range("settings.background.color", message.color(), 0, kBrightestBackground);

@@ -46,9 +46,22 @@ TEST_F(CliWithServerTest, MaterialsByColourMeanTheSameInASceneFileAndAsOptions) 
   const Finished from_file = run(with_server({"render", "--scene", "scene.json", "-o", "a.png"}));
   ASSERT_EQ(from_file.exit_code, 0) << from_file.err;
   EXPECT_THAT(from_file.err, HasSubstr("warning: material: blue scatters too little"));
-  const std::vector<std::string> options = {"render", "cube.obj", "-o", "b.png", "--mm-per-unit", "10",
-                                            "--point-light", "1,2,3,900,800,700", "--eye", "2,2,5", "--size", "32x24",
-                                            "--diffuse-color", "0.9,0.5,0.01", "--mean-free-path", "1"};
+  const std::vector<std::string> options = {"render",
+                                            "cube.obj",
+                                            "-o",
+                                            "b.png",
+                                            "--mm-per-unit",
+                                            "10",
+                                            "--point-light",
+                                            "1,2,3,900,800,700",
+                                            "--eye",
+                                            "2,2,5",
+                                            "--size",
+                                            "32x24",
+                                            "--diffuse-color",
+                                            "0.9,0.5,0.01",
+                                            "--mean-free-path",
+                                            "1"};
   const auto with = [&](std::initializer_list<std::string> more) {
     std::vector<std::string> all = options;
     all.insert(all.end(), more);

@@ -233,8 +233,7 @@ TEST_F(BadRequestTest, RefusesMaterials) {
   };
   expect_material_refused(with_color(0.9999f, 1, 0), {"material.diffuse_color.color.y", "0.9999", "0..0.999"});
   expect_material_refused(with_color(kNan, 1, 0), {"material.diffuse_color.color.y", "nan", "0..0.999"});
-  expect_material_refused(with_color(0.5f, 0, 0),
-                          {"material.diffuse_color.mean_free_path_mm.z", "0", "0.001..1000"});
+  expect_material_refused(with_color(0.5f, 0, 0), {"material.diffuse_color.mean_free_path_mm.z", "0", "0.001..1000"});
   expect_material_refused(with_color(0.5f, 1, 0.5f), {"material.diffuse_color.refractive_index", "0.5", "1..3"});
   const auto with_volume = [&](float attenuation, float distance, float scatter, float anisotropy) {
     return [&, attenuation, distance, scatter, anisotropy](auto& m) {

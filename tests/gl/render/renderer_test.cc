@@ -424,7 +424,8 @@ TEST_F(Renderer, MeshesOfOneSceneHideEachOther) {
   auto front = std::make_shared<scene::Mesh>(*scene->meshes[0]);
   front->name = "scenes/test/meshes/front";
   front->scene_from_mesh[3] = glm::vec4(0, 0, 12, 1);
-  scene->materials.push_back({"scenes/test/materials/k", optics::PresetName{"ketchup"}, optics::find_preset("ketchup")->coefficients});
+  scene->materials.push_back(
+      {"scenes/test/materials/k", optics::PresetName{"ketchup"}, optics::find_preset("ketchup")->coefficients});
   front->material = "scenes/test/materials/k";
   auto both_scene = std::make_shared<scene::SceneSnapshot>(*scene);
   both_scene->meshes.push_back(front);

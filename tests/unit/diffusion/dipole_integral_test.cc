@@ -94,7 +94,8 @@ float error_against_reference(const Mesh& mesh, const std::vector<PointLight>& l
   return std::max({error.x, error.y, error.z});
 }
 
-/// Of points, the share whose error moves by less than 0.4 % of the mean from pose to pose as a torus swells into a ball.
+/// Of points, the share whose error moves by less than 0.4 % of the mean from pose to pose as a torus swells into a
+/// ball.
 double steady_share(Quality quality) {
   const Mesh torus = testing::make_torus(7, 3, 320, 128);
   const auto points = testing::random_points(torus, 400, 7);
@@ -177,10 +178,11 @@ void expect_closed_form_on_a_plane(const optics::MaterialPreset& preset, optics:
   const glm::vec3 smooth = smooth_distance_mm(optics::make_profile(material));
   const glm::vec3 l = optics::make_dipole(material).mean_free_path_mm;
   // Wide enough for what spreads most: without absorption 1/r of the light goes beyond r.
-  const Mesh disc = testing::make_graded_disc(0.2f * std::min({smooth.x, smooth.y, smooth.z}),
-                                              1500 * std::max({l.x, l.y, l.z}), 160);
+  const Mesh disc =
+      testing::make_graded_disc(0.2f * std::min({smooth.x, smooth.y, smooth.z}), 1500 * std::max({l.x, l.y, l.z}), 160);
   DipoleIntegral integral(topology_of(disc));
-  const auto radiosity = radiosity_of(integral, disc, [](auto&, auto&) { return glm::vec3(2, 3, 4); }, material);
+  const auto radiosity = radiosity_of(
+      integral, disc, [](auto&, auto&) { return glm::vec3(2, 3, 4); }, material);
   const glm::vec3 closed = optics::total_reflectance(material) * glm::vec3(2, 3, 4);
   for (int c = 0; c < 3; ++c) {
     EXPECT_NEAR(radiosity[0][c] / closed[c], 1, 0.01)

@@ -100,8 +100,8 @@ TEST(GaussianSum, FollowsTheDipolesWithoutNegativeWeights) {
         const GaussianSum sum = fit_gaussians(channel);
         for (const double weight : sum.weight) EXPECT_GE(weight, 0);
         const double z = channel.smooth_mm;
-        const double total = over_plane(
-            0.001 * z, 120 * z, [&](double r2) { return carried_kernel(channel, sum, r2).value; });
+        const double total =
+            over_plane(0.001 * z, 120 * z, [&](double r2) { return carried_kernel(channel, sum, r2).value; });
         EXPECT_NEAR(sum.total() / total, 1, 0.02) << name << " profile " << static_cast<int>(kind);
       }
     }
@@ -120,9 +120,8 @@ TEST(KernelTables, NearAndLocalPartsMakeUpTheWhole) {
     ASSERT_NE(&kernels.near_table(at.step), &kernels.far_table());
     for (int c = 0; c < 3; ++c) {
       EXPECT_GT(kernels.local_response(at)[c], 0.05f);
-      const double near = over_plane(0.0005, 14, [&](double r2) {
-        return looked_up(kernels.domain(), kernels.near_table(at.step), c, r2).value;
-      });
+      const double near = over_plane(
+          0.0005, 14, [&](double r2) { return looked_up(kernels.domain(), kernels.near_table(at.step), c, r2).value; });
       const double beyond = over_plane(14, 1e4, [&](double r2) {
         return optics::diffuse_reflectance(profile, static_cast<float>(std::sqrt(r2)))[c];
       });

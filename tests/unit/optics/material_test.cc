@@ -121,9 +121,8 @@ TEST(Volume, ForwardScatteringKeepsTheColourAndReducesTheScattering) {
 }
 
 TEST(Volume, ExtinctionBeyondTheRangeIsKeptWithinItWithAWarning) {
-  const Volume form{.attenuation_color = {1, 1e-30f, 0.5f},
-                    .attenuation_distance_mm = 1e-3f,
-                    .multiscatter_color = glm::vec3(0.9f)};
+  const Volume form{
+      .attenuation_color = {1, 1e-30f, 0.5f}, .attenuation_distance_mm = 1e-3f, .multiscatter_color = glm::vec3(0.9f)};
   const ResolvedMaterial resolved = resolve(form, Profile::kDipole);
   EXPECT_THAT(resolved.warnings, ElementsAre(HasSubstr("attenuation in red"), HasSubstr("attenuation in green")));
   const glm::vec3 extinction = resolved.coefficients.absorption_mm + resolved.coefficients.reduced_scattering_mm;

@@ -91,7 +91,8 @@ TEST(NormalizedDiffusion, HasTheLimitsOfItsFormula) {
   const double a = total_reflectance(material).x;
   const double s = 1.9 - a + 3.5 * (a - 0.8) * (a - 0.8), l = 0.5;
   for (const double r : {1e-3, 0.1, 1.0, 5.0}) {
-    const double expected = a * s / l * (std::exp(-s * r / l) + std::exp(-s * r / (3 * l))) / (8 * std::numbers::pi * r);
+    const double expected =
+        a * s / l * (std::exp(-s * r / l) + std::exp(-s * r / (3 * l))) / (8 * std::numbers::pi * r);
     EXPECT_NEAR(diffuse_reflectance(profile, static_cast<float>(r)).x / expected, 1, 1e-4) << r;
   }
   Coefficients classical = material;

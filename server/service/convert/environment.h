@@ -19,7 +19,7 @@ struct EnvironmentSpec {
   PayloadSpec payload;
 };
 
-/// INVALID_ARGUMENT names the field; UNIMPLEMENTED for occlusion.
+/// Errors name the field; occlusion is refused.
 absl::StatusOr<EnvironmentSpec> from_proto(const v1::EnvironmentHeader& message);
 
 /// `bytes` are the spec's. INVALID_ARGUMENT names the first pixel that is not within 0..1e9.

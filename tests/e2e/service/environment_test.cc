@@ -154,7 +154,8 @@ TEST_F(EnvironmentTest, IsRefusedByFieldValueAndRange) {
   expect_refused(wrong, "environment.rotation_deg", "1000000");
   wrong = header();
   wrong.mutable_environment()->set_occlusion(true);
-  expect_refused(wrong, "environment.occlusion", "false", grpc::StatusCode::UNIMPLEMENTED);
+  expect_refused(wrong, "environment.occlusion", "false",
+                 static_cast<grpc::StatusCode>(absl::StatusCode::kUnimplemented));
   wrong = header();
   wrong.set_parent("scenes/0");
   expect_refused(wrong, "parent", "an existing scene", grpc::StatusCode::NOT_FOUND);

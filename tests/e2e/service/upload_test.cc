@@ -61,7 +61,7 @@ TEST_F(UploadTest, RefusesWhatNoMeshKeeps) {
   header.set_has_colors(true);
   v1::MeshResponse response;
   const grpc::Status status = upload(header, mesh.payload(), &response);
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::UNIMPLEMENTED);
+  EXPECT_EQ(status.error_code(), static_cast<grpc::StatusCode>(absl::StatusCode::kUnimplemented));
   EXPECT_EQ(error_info(status).metadata().at("field"), "has_colors");
   EXPECT_EQ(get_scene(scene_).mesh_count(), 0u);
 }

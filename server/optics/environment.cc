@@ -21,19 +21,23 @@ constexpr size_t kJudgedNormals = 96;
 
 double luminance(const glm::vec3& rgb) { return 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b; }
 
-/// Means over blocks.
+/// Means over blocks: at most `height_px` rows and twice as many columns, whatever the shape of `map`.
 LatLongMap shrink(const LatLongMap& map, uint32_t height_px) {
-  const uint32_t factor = std::max(map.height_px / height_px, 1u);
-  LatLongMap small{(map.width_px + factor - 1) / factor, (map.height_px + factor - 1) / factor, {}};
+  const auto divide_up = [](uint32_t of, uint32_t by) { return (of + by - 1) / by; };
+  const uint32_t across = divide_up(map.width_px, 2 * height_px), down = divide_up(map.height_px, height_px);
+  LatLongMap small{divide_up(map.width_px, across), divide_up(map.height_px, down), {}};
   small.radiance.resize(size_t{small.width_px} * small.height_px);
+  std::vector<double> weights(down);
   for (uint32_t y = 0; y < small.height_px; ++y) {
+    const uint32_t top = y * down, bottom = std::min(top + down, map.height_px);
+    for (uint32_t v = top; v < bottom; ++v) weights[v - top] = map.solid_angle(v);
     for (uint32_t x = 0; x < small.width_px; ++x) {
       glm::dvec3 sum(0);
       double weight = 0;
-      for (uint32_t v = y * factor; v < std::min((y + 1) * factor, map.height_px); ++v) {
-        for (uint32_t u = x * factor; u < std::min((x + 1) * factor, map.width_px); ++u) {
-          sum += map.solid_angle(v) * glm::dvec3(map.radiance[size_t{v} * map.width_px + u]);
-          weight += map.solid_angle(v);
+      for (uint32_t v = top; v < bottom; ++v) {
+        for (uint32_t u = x * across; u < std::min((x + 1) * across, map.width_px); ++u) {
+          sum += weights[v - top] * glm::dvec3(map.radiance[size_t{v} * map.width_px + u]);
+          weight += weights[v - top];
         }
       }
       small.radiance[size_t{y} * small.width_px + x] = glm::vec3(sum / weight);
@@ -45,8 +49,9 @@ LatLongMap shrink(const LatLongMap& map, uint32_t height_px) {
 double flux(const LatLongMap& map) {
   double sum = 0;
   for (uint32_t y = 0; y < map.height_px; ++y) {
+    const double solid_angle = map.solid_angle(y);
     for (uint32_t x = 0; x < map.width_px; ++x) {
-      sum += map.solid_angle(y) * luminance(map.radiance[size_t{y} * map.width_px + x]);
+      sum += solid_angle * luminance(map.radiance[size_t{y} * map.width_px + x]);
     }
   }
   return sum;

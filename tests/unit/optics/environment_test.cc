@@ -114,13 +114,27 @@ TEST(TakeOutLamps, FindsASunWithItsDirectionAndStrength) {
   for (const glm::vec3& left : map.radiance) ASSERT_LT(left.b, 1.01f);
 }
 
+TEST(TakeOutLamps, FindsASunInAMapMuchWiderThanTall) {
+  const glm::vec3 to_sun = glm::normalize(glm::vec3(-0.7f, 0.3f, 0.5f));
+  LatLongMap map{2048, 63, {}};
+  for (uint32_t y = 0; y < map.height_px; ++y) {
+    for (uint32_t x = 0; x < map.width_px; ++x) {
+      const bool in_sun = glm::dot(map.direction(x, y), to_sun) > std::cos(0.1f);
+      map.radiance.push_back(in_sun ? glm::vec3(500) : glm::vec3(0.5f));
+    }
+  }
+  const auto lamps = take_out_lamps(map);
+  ASSERT_EQ(lamps.size(), 1u);
+  EXPECT_GT(glm::dot(-lamps[0].direction, to_sun), 0.999f);
+}
+
 TEST(TakeOutLamps, LeavesAMapOfNoLightAlone) {
   LatLongMap map = map_of(8, [](const glm::vec3&) { return glm::vec3(0); });
   EXPECT_TRUE(take_out_lamps(map).empty());
 }
 
 TEST(Environment, TakesTheSmallestAndOddestMaps) {
-  for (const auto& [width, height] : {std::pair{2u, 1u}, {3u, 2u}, {37u, 5u}}) {
+  for (const auto& [width, height] : {std::pair{2u, 1u}, {3u, 2u}, {37u, 5u}, {8192u, 1u}, {2u, 4096u}, {1024u, 63u}}) {
     LatLongMap map{width, height, std::vector<glm::vec3>(size_t{width} * height, glm::vec3(1))};
     map.radiance[0] = glm::vec3(1e6f);
     const EnvironmentLight light = analyse(map);

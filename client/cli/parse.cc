@@ -88,6 +88,13 @@ std::optional<std::vector<Channel>> parse_channels(std::string_view text) {
   }
 }
 
+std::optional<Background> parse_background(std::string_view text) {
+  if (text == "environment") return Background{.environment = true};
+  const std::optional<Rgb> color = parse_rgb(text);
+  if (!color) return std::nullopt;
+  return Background{.color = color};
+}
+
 std::optional<Exposure> parse_exposure(std::string_view text) {
   constexpr std::string_view kAuto = "auto";
   Exposure exposure;

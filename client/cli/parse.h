@@ -32,6 +32,12 @@ struct Exposure {
   float ev = 0;
 };
 std::optional<Exposure> parse_exposure(std::string_view text);
+/// "environment", or R,G,B.
+struct Background {
+  std::optional<Rgb> color;
+  bool environment = false;
+};
+std::optional<Background> parse_background(std::string_view text);
 std::optional<Size> parse_size(std::string_view text);  ///< WxH, both above 0
 
 /// By the file's extension, in any case.

@@ -150,7 +150,8 @@ void add_technique_options(CLI::App& command, RenderArguments& arguments) {
 
 void add_picture_options(CLI::App& command, RenderArguments& arguments) {
   add_parsed(command, "--samples", "N", "A pixel, 1 to 64 (default: 1)", parse_count, arguments.samples);
-  add_parsed(command, "--background", "R,G,B", "Linear colour where nothing is (default: transparent)", parse_rgb,
+  add_parsed(command, "--background", "R,G,B | environment",
+             "Linear colour, or the environment, where nothing is (default: transparent)", parse_background,
              arguments.background);
   add_parsed(command, "--exposure", "EV | auto[+-EV]", "Stops, or found for the frame; not applied to EXR",
              parse_exposure, arguments.exposure);

@@ -31,7 +31,7 @@ struct RenderArguments {
   std::optional<Exposure> exposure;
   std::optional<ToneMapping> tone_mapping;
   std::optional<uint32_t> samples;
-  std::optional<Rgb> background;
+  std::optional<Background> background;
 
   std::optional<std::string> preset;
   std::optional<Rgb> absorption_mm;

@@ -110,7 +110,8 @@ void take_settings(const RenderArguments& arguments, RenderOptions* options) {
   if (arguments.exposure) settings.auto_exposure = arguments.exposure->found;
   if (arguments.tone_mapping) settings.tone_mapping = *arguments.tone_mapping;
   if (arguments.samples) settings.samples = *arguments.samples;
-  if (arguments.background) settings.background = arguments.background;
+  if (arguments.background) settings.background = arguments.background->color;
+  if (arguments.background) settings.environment_background = arguments.background->environment;
 }
 
 }  // namespace

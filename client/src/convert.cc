@@ -105,6 +105,7 @@ v1::RenderSettings to_proto(const RenderSettings& settings) {
   message.set_tone_mapping(static_cast<v1::ToneMapping>(settings.tone_mapping));
   message.set_samples(settings.samples);
   if (settings.background) *message.mutable_background()->mutable_color() = to_proto(*settings.background);
+  if (settings.environment_background) message.mutable_background()->set_environment(true);
   return message;
 }
 
@@ -174,6 +175,7 @@ RenderSettings from_proto(const v1::RenderSettings& message) {
   }
   if (message.samples() != 0) settings.samples = message.samples();
   if (message.background().has_color()) settings.background = rgb_from_proto(message.background().color());
+  settings.environment_background = message.background().environment();
   if (message.quality() != v1::QUALITY_UNSPECIFIED) settings.quality = static_cast<Quality>(message.quality());
   const v1::PaperSettings& paper = message.paper();
   if (paper.terms() != v1::TERMS_UNSPECIFIED) settings.paper.terms = static_cast<Terms>(paper.terms());

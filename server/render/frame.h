@@ -51,12 +51,13 @@ struct RenderSettings {
   ToneMapping tone_mapping = ToneMapping::kNone;  ///< not applied to linear pixels
   uint32_t samples = 1;                           ///< a pixel, 1..64
   std::optional<glm::vec3> background;            ///< linear colour, 0..1e6, where no surface is; not given: nothing
+  bool environment_background = false;            ///< the scene's environment there instead
 };
 
 /// Whether 8-bit pixels are made from linear ones, and not by the driver as it stores them.
 inline bool needs_developing(const RenderSettings& settings) {
   return settings.samples > 1 || settings.auto_exposure || settings.tone_mapping != ToneMapping::kNone ||
-         settings.background.has_value();
+         settings.background.has_value() || settings.environment_background;
 }
 
 /// Whether the meshes of a frame hide lights.
@@ -120,7 +121,8 @@ struct RendererInfo {
 class FrameRenderer {
  public:
   virtual ~FrameRenderer() = default;
-  /// Errors: FAILED_PRECONDITION no mesh; CANCELLED once `cancelled` is seen set; RESOURCE_EXHAUSTED out of memory.
+  /// Errors: FAILED_PRECONDITION no mesh, or no environment for the background; CANCELLED once `cancelled` is seen set;
+  /// RESOURCE_EXHAUSTED out of memory.
   virtual absl::StatusOr<Frame> render(const FrameRequest& request, const std::atomic<bool>& cancelled) = 0;
   virtual RendererInfo info() const = 0;
 };

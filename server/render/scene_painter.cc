@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fmt/format.h"
+#include "render/backdrop.h"
 #include "render/develop.h"
 #include "render/projection.h"
 
@@ -118,6 +119,10 @@ absl::Status ScenePainter::draw_tile(Job& job, const Tile& tile, uint8_t* pixels
 absl::StatusOr<Frame> ScenePainter::paint(const FrameRequest& request, const std::atomic<bool>& cancelled) {
   const scene::SceneSnapshot& scene = *request.scene;
   if (scene.meshes.empty()) return absl::FailedPreconditionError(fmt::format("{}: has no mesh to draw", scene.name));
+  if (request.settings.environment_background && scene.environment == nullptr) {
+    return absl::FailedPreconditionError(
+        fmt::format("settings.background.environment: {} has no environment to show", scene.name));
+  }
   const bool picture = request.format == PixelFormat::kSrgb8;
   const bool developed = picture && needs_developing(request.settings);
   Job job{request, cancelled, needs_of(request), developed ? PixelFormat::kLinearFloat : request.format};
@@ -137,6 +142,12 @@ absl::StatusOr<Frame> ScenePainter::paint(const FrameRequest& request, const std
   frame.scene_revision = scene.revision;
   if (absl::Status drawn = draw_tiles(job, frame); !drawn.ok()) return drawn;
   if (request.settings.background) lay_over(*request.settings.background, std::get<base::ImageF>(frame.image));
+  if (request.settings.environment_background) {
+    job.clock.run("backdrop", [&] {
+      lay_over_environment(*scene.environment, request.camera, request.settings.samples,
+                           std::get<base::ImageF>(frame.image));
+    });
+  }
   if (picture) frame.exposure_ev = request.settings.exposure_ev;
   if (developed) {
     job.clock.run("develop", [&] {

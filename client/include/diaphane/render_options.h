@@ -86,6 +86,7 @@ struct RenderSettings {
   ToneMapping tone_mapping = ToneMapping::kNone;
   uint32_t samples = 1;           ///< a pixel, 1..64
   std::optional<Rgb> background;  ///< linear, each 0..1e6, where no surface is; not given: nothing, alpha 0
+  bool environment_background = false;  ///< the scene's environment there instead, which it must have
 };
 
 struct Size {

@@ -239,7 +239,8 @@ absl::StatusOr<session::FrameTask> from_proto(const v1::RenderFrameRequest& mess
   task.request.settings = *settings;
   task.encoding = *encoding;
   // JPEG has no alpha: edges that share a pixel with nothing are mixed with its black as light, not as codes.
-  if (encoding->format == encode::ImageFormat::kJpeg && settings->samples > 1 && !settings->background) {
+  if (encoding->format == encode::ImageFormat::kJpeg && settings->samples > 1 && !settings->background &&
+      !settings->environment_background) {
     task.request.settings.background = glm::vec3(0);
   }
   return task;

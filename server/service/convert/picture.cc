@@ -24,9 +24,6 @@ absl::StatusOr<render::ToneMapping> from_proto(v1::ToneMapping tone_mapping) {
 }
 
 absl::StatusOr<std::optional<glm::vec3>> from_proto(const v1::Background& message) {
-  if (message.has_environment() && message.environment()) {
-    return base::field_error(absl::StatusCode::kUnimplemented, {"settings.background.environment", "true", "false"});
-  }
   if (!message.has_color()) return std::optional<glm::vec3>();
   absl::Status color = check_range("settings.background.color", message.color(), 0, kBrightestBackground);
   if (!color.ok()) return color;
@@ -51,6 +48,7 @@ absl::Status take_picture_settings(const v1::RenderSettings& message, render::Re
   settings.auto_exposure = message.auto_exposure();
   settings.tone_mapping = *tone_mapping;
   settings.background = *background;
+  settings.environment_background = message.background().environment();
   return absl::OkStatus();
 }
 

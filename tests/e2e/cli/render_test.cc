@@ -104,6 +104,10 @@ TEST_F(CliWithServerTest, EnvironmentsLightInPlaceOfTheKeyLightAndTurn) {
   for (const char* technique : {"paper", "lambert"}) {
     EXPECT_EQ(run(with("d.png", {"--technique", technique})).exit_code, 0) << technique;
   }
+  ASSERT_EQ(run(with("e.png", {"--background", "environment"})).exit_code, 0);
+  EXPECT_NE(read_file(folder_ / "e.png"), read_file(folder_ / "a.png"));
+  EXPECT_THAT(refusal(4, with_server(render({"-o", "x.png", "--background", "environment"}))),
+              HasSubstr("no environment to show"));
   write_file(folder_ / "broken.hdr", hdr.substr(0, 60));
   EXPECT_THAT(refusal(5, with_server(render({"-o", "x.png", "--environment", "broken.hdr"}))), HasSubstr("broken.hdr"));
   EXPECT_THAT(refusal(4, with("x.png", {"--environment-intensity", "-1"})), HasSubstr("environment.intensity"));

@@ -79,6 +79,57 @@ TEST_F(EnvironmentFrames, OfOneRadianceEnterEverywhereAlike) {
   }
 }
 
+TEST_F(EnvironmentFrames, AreSeenBehindTheBodyWhereTheirLightComesFrom) {
+  auto scene = make_scene(make_box({10, 10, 10}, 4), "marble");
+  // Each way has a colour of its own.
+  scene->environment = environment_of([](const glm::vec3& d) { return 2.0f + d; }, 0, 0.5f);
+  for (const Technique technique : {Technique::kIntegral, Technique::kPaper, Technique::kReference}) {
+    FrameRequest request = request_of(scene, technique);
+    request.camera = {{0, 0, 25}, {0, 0, 0}, {0, 1, 0}, 90};
+    const std::vector<float> without = render(request);
+    request.settings.environment_background = true;
+    const std::vector<float> with = render(request);
+    size_t behind = 0;
+    for (size_t i = 0; i < with.size(); i += 4) {
+      EXPECT_EQ(with[i + 3], 1);
+      const size_t pixel = i / 4;
+      if (without[i + 3] == 1) {
+        EXPECT_EQ(with[i], without[i]);
+        continue;
+      }
+      ++behind;
+      // Half the height of the picture is as wide as the eye is far: tan 45° = 1.
+      const glm::vec3 way = glm::normalize(glm::vec3((static_cast<float>(pixel % 48) + 0.5f - 24) / 16,
+                                                     (15.5f - static_cast<float>(pixel / 48)) / 16, -1));
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(with[i + c], 0.5f * (2 + way[c]), 0.003f) << pixel;
+    }
+    EXPECT_GT(behind, 500u);
+    EXPECT_LT(behind, 48u * 32u);
+  }
+}
+
+TEST_F(EnvironmentFrames, AreSeenTurned) {
+  auto scene = make_scene(make_box({10, 10, 10}, 4), "marble");
+  // A lamp at -z: straight ahead. It turns about +y, counter-clockwise seen from above: to the left.
+  const auto lamp = [](const glm::vec3& d) { return glm::vec3(d.z < -0.98f ? 5.0f : 0.0f); };
+  scene->environment = environment_of(lamp, 60);
+  FrameRequest request = request_of(scene, Technique::kIntegral);
+  request.camera = {{0, 0, 25}, {-std::sin(glm::radians(60.0f)), 0, 25 - 0.5f}, {0, 1, 0}, 60};
+  request.settings.environment_background = true;
+  request.settings.samples = 4;
+  const std::vector<float> seen = render(request);
+  EXPECT_NEAR(seen[4 * (16 * 48 + 24)], 5, 1e-4);
+  EXPECT_EQ(seen[0], 0);
+}
+
+TEST_F(EnvironmentFrames, ThatAreNotThereCannotBeTheBackground) {
+  FrameRequest request = request_of(make_scene(make_box({10, 10, 10}, 4), "marble"), Technique::kIntegral);
+  request.settings.environment_background = true;
+  const auto frame = renderer_->render(request, std::atomic<bool>(false));
+  EXPECT_EQ(frame.status().code(), absl::StatusCode::kFailedPrecondition);
+  EXPECT_THAT(std::string(frame.status().message()), testing::HasSubstr("settings.background.environment"));
+}
+
 TEST_F(EnvironmentFrames, LightLambertWithoutFresnel) {
   auto scene = make_scene(make_box({10, 10, 10}, 4), "marble");
   scene->environment = environment_of([](const glm::vec3&) { return glm::vec3(1); });

@@ -54,6 +54,18 @@ TEST(Exposures, AreStopsOrFoundOrBoth) {
     EXPECT_FALSE(parse_exposure(text)) << text;
 }
 
+TEST(Backgrounds, AreAColourOrTheEnvironment) {
+  const std::optional<Background> colour = parse_background("1,0.5,0");
+  ASSERT_TRUE(colour && colour->color);
+  EXPECT_EQ(colour->color->g, 0.5f);
+  EXPECT_FALSE(colour->environment);
+  const std::optional<Background> environment = parse_background("environment");
+  ASSERT_TRUE(environment);
+  EXPECT_TRUE(environment->environment);
+  EXPECT_FALSE(environment->color);
+  for (const char* text : {"", "1,2", "Environment", "environment,1"}) EXPECT_FALSE(parse_background(text)) << text;
+}
+
 TEST(Sizes, AreTwoPositiveIntegers) {
   const std::optional<Size> size = parse_size("640x480");
   ASSERT_TRUE(size);

@@ -95,6 +95,7 @@ Json to_json(const SceneDescription& description) {
     for (const NamedProfile& named : kProfiles) {
       if (named.profile == info.material.profile) material["profile"] = named.name;
     }
+    if (info.material.coat) material["coat"] = {{"roughness", info.material.coat->roughness}};
     material["coefficients"] = to_json(info.resolved);
     material["warnings"] = info.warnings;
     json["materials"].push_back(std::move(material));

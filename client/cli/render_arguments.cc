@@ -118,6 +118,10 @@ void add_material_options(CLI::App& command, RenderArguments& arguments) {
   add_parsed(command, "--ior", "N", "Refractive index, 1 to 3", parse_index, arguments.refractive_index);
   add_parsed(command, "--profile", profile_names(), "How light spreads below the surface (default: dipole)",
              parse_profile, arguments.profile);
+  auto* coat = command.add_flag("--coat", arguments.coat, "The body's interface reflects lights and environment");
+  add_parsed(command, "--roughness", "A", "Of the coat, GGX alpha, 0 to 1 (default: 0.1)", parse_number,
+             arguments.roughness)
+      ->needs(coat);
 }
 
 void add_camera_options(CLI::App& command, RenderArguments& arguments) {
@@ -226,7 +230,7 @@ void add_render_options(CLI::App& command, RenderArguments& arguments) {
       ->needs(environment);
   for (const char* flag :
        {"--material", "--absorption", "--scattering", "--diffuse-color", "--mean-free-path", "--ior", "--profile",
-        "--mm-per-unit", "--height-mm", "--point-light", "--directional-light", "--spot-light"}) {
+        "--coat", "--mm-per-unit", "--height-mm", "--point-light", "--directional-light", "--spot-light"}) {
     scene->excludes(command.get_option(flag));
   }
 }

@@ -40,6 +40,8 @@ struct RenderArguments {
   std::optional<Rgb> mean_free_path_mm;
   std::optional<float> refractive_index;
   std::optional<Profile> profile;
+  bool coat = false;
+  std::optional<float> roughness;
 
   std::optional<double> millimetres_per_unit;
   std::optional<double> height_mm;

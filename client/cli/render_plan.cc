@@ -42,9 +42,12 @@ absl::Status read_meshes(const fs::path& path, const Matrix& scene_from_file, si
   return absl::OkStatus();
 }
 
+constexpr float kDefaultRoughness = 0.1f;
+
 Material material_of(const RenderArguments& arguments) {
   Material material;
   if (arguments.profile) material.profile = *arguments.profile;
+  if (arguments.coat) material.coat = Coat{arguments.roughness.value_or(kDefaultRoughness)};
   // Of each pair, the one needs the other on the command line.
   if (arguments.absorption_mm && arguments.reduced_scattering_mm) {
     Coefficients coefficients{*arguments.absorption_mm, *arguments.reduced_scattering_mm};

@@ -61,6 +61,7 @@ v1::Material to_proto(const Material& material) {
     *message.mutable_volume() = form_to_proto(std::get<Volume>(material.model));
   }
   message.set_profile(static_cast<v1::Profile>(material.profile));
+  if (material.coat) message.mutable_coat()->set_roughness(material.coat->roughness);
   return message;
 }
 
@@ -82,6 +83,7 @@ Material from_proto(const v1::Material& message) {
     material.model = message.preset();
   }
   if (message.profile() != v1::PROFILE_UNSPECIFIED) material.profile = static_cast<Profile>(message.profile());
+  if (message.has_coat()) material.coat = Coat{message.coat().roughness()};
   return material;
 }
 

@@ -52,7 +52,7 @@ absl::StatusOr<uint64_t> Scene::update_material(const MaterialHandle& handle, co
   v1::UpdateMaterialRequest request;
   *request.mutable_material() = to_proto(material);
   request.mutable_material()->set_name(handle.name);
-  for (const char* path : {"model", "profile"}) request.mutable_update_mask()->add_paths(path);
+  for (const char* path : {"model", "profile", "coat"}) request.mutable_update_mask()->add_paths(path);
   request.set_request_id(new_request_id());
   return revision_of(connection_->call(connection_->scene_service(), &SceneStub::UpdateMaterial, request));
 }

@@ -91,10 +91,7 @@ absl::Status convert_materials(const fs::path& path, const SceneFileForm& form, 
     if (material.model_case() == v1::Material::MODEL_NOT_SET) {
       return invalid(path, fmt::format("materials[{}]: must have preset, coefficients, diffuse_color or volume", i));
     }
-    for (const auto& [given, field] :
-         {std::pair(material.has_coat(), "coat"), std::pair(material.has_textures(), "textures")}) {
-      if (given) return invalid(path, fmt::format("materials[{}].{}: is not drawn yet", i, field));
-    }
+    if (material.has_textures()) return invalid(path, fmt::format("materials[{}].textures: is not drawn yet", i));
     scene->materials.push_back({material.name(), internal::from_proto(material)});
   }
   return absl::OkStatus();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "glm/common.hpp"
 #include "glm/geometric.hpp"
 #include "optics/dipole.h"
 
@@ -122,6 +123,22 @@ glm::vec3 LatLongMap::direction(uint32_t x, uint32_t y) const {
 
 double LatLongMap::solid_angle(uint32_t y) const {
   return 2 * kPi / width_px * (std::cos(kPi * y / height_px) - std::cos(kPi * (y + 1.0) / height_px));
+}
+
+glm::vec3 radiance_towards(const LatLongMap& map, const glm::vec3& direction) {
+  const float around = 0.5f + std::atan2(direction.x, -direction.z) / (2 * std::numbers::pi_v<float>);
+  const float down = std::acos(glm::clamp(direction.y, -1.0f, 1.0f)) / std::numbers::pi_v<float>;
+  const float x = around * static_cast<float>(map.width_px) - 0.5f, y = down * static_cast<float>(map.height_px) - 0.5f;
+  const float left = std::floor(x), above = std::floor(y);
+  const auto width = static_cast<int64_t>(map.width_px), height = static_cast<int64_t>(map.height_px);
+  const auto at = [&](int64_t column, int64_t row) {
+    column = (column % width + width) % width;
+    row = std::clamp<int64_t>(row, 0, height - 1);
+    return map.radiance[static_cast<size_t>(row * width + column)];
+  };
+  const auto column = static_cast<int64_t>(left), row = static_cast<int64_t>(above);
+  return glm::mix(glm::mix(at(column, row), at(column + 1, row), x - left),
+                  glm::mix(at(column, row + 1), at(column + 1, row + 1), x - left), y - above);
 }
 
 Harmonics project(const LatLongMap& map) {

@@ -34,6 +34,9 @@ struct EnvironmentLight {
   std::vector<EnvironmentLamp> lamps;
 };
 
+/// Radiance that arrives from a unit direction of `map`, between its pixels bilinear; held over the poles.
+glm::vec3 radiance_towards(const LatLongMap& map, const glm::vec3& direction);
+
 /// Projects a map on polynomials; spread over the map's rows in order: the same bytes every time.
 Harmonics project(const LatLongMap& map);
 

@@ -1,10 +1,7 @@
 #include "render/backdrop.h"
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "glm/common.hpp"
 #include "glm/geometric.hpp"
 #include "glm/trigonometric.hpp"
 #include "render/ambient.h"
@@ -13,20 +10,6 @@
 
 namespace diaphane::render {
 namespace {
-
-/// Between the centres of pixels; around the poles' axis the map goes on, over the poles it is held.
-glm::vec3 bilinear(const optics::LatLongMap& map, float x, float y) {
-  const float left = std::floor(x), above = std::floor(y);
-  const auto width = static_cast<int64_t>(map.width_px), height = static_cast<int64_t>(map.height_px);
-  const auto at = [&](int64_t column, int64_t row) {
-    column = (column % width + width) % width;
-    row = std::clamp<int64_t>(row, 0, height - 1);
-    return map.radiance[static_cast<size_t>(row * width + column)];
-  };
-  const auto column = static_cast<int64_t>(left), row = static_cast<int64_t>(above);
-  return glm::mix(glm::mix(at(column, row), at(column + 1, row), x - left),
-                  glm::mix(at(column, row + 1), at(column + 1, row + 1), x - left), y - above);
-}
 
 /// From a place in the picture to the direction that it looks in.
 class Sight {
@@ -54,12 +37,8 @@ class Sight {
 }  // namespace
 
 glm::vec3 backdrop_radiance(const scene::Environment& environment, const glm::vec3& direction) {
-  const optics::LatLongMap& map = *environment.map;
-  const glm::vec3 of_map = rotated_about_y(direction, -environment.rotation_deg);
-  const float around = 0.5f + std::atan2(of_map.x, -of_map.z) / (2 * std::numbers::pi_v<float>);
-  const float down = std::acos(glm::clamp(of_map.y, -1.0f, 1.0f)) / std::numbers::pi_v<float>;
-  return environment.intensity * bilinear(map, around * static_cast<float>(map.width_px) - 0.5f,
-                                          down * static_cast<float>(map.height_px) - 0.5f);
+  return environment.intensity *
+         optics::radiance_towards(*environment.map, rotated_about_y(direction, -environment.rotation_deg));
 }
 
 void lay_over_environment(const scene::Environment& environment, const scene::Camera& camera, uint32_t samples,

@@ -28,6 +28,7 @@ struct DrawnMesh {
   const scene::Mesh* mesh;
   MeshState* state;
   optics::Coefficients material;
+  std::optional<optics::Coat> coat;
 };
 
 }  // namespace diaphane::render

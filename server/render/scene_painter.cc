@@ -94,7 +94,7 @@ void ScenePainter::read_tile(Job& job, const Tile& tile, uint8_t* pixels) {
       targets_->read_channels(width, height, channels.irradiance.data(), channels.radiosity.data());
     });
   }
-  if (!job.needs.surface) return;
+  if (!job.needs.surface && !job.coated) return;
   if (job.request.settings.technique == Technique::kIntegral) draw_gbuffer(job, tile);
   channels.position_mm.resize(count);
   channels.normal.resize(count);
@@ -105,14 +105,20 @@ void ScenePainter::read_tile(Job& job, const Tile& tile, uint8_t* pixels) {
 absl::Status ScenePainter::draw_tile(Job& job, const Tile& tile, uint8_t* pixels) {
   if (absl::Status status = check_cancelled(job); !status.ok()) return status;
   const Technique technique = job.request.settings.technique;
-  if (technique == Technique::kReference) return draw_reference_tile(job, tile, pixels);
-  if (technique == Technique::kIntegral) {
-    draw_forward(job, tile);
+  if (technique == Technique::kReference) {
+    if (absl::Status status = draw_reference_tile(job, tile, pixels); !status.ok()) return status;
   } else {
-    draw_gbuffer(job, tile);
-    shade_tile(job, tile);
+    if (technique == Technique::kIntegral) {
+      draw_forward(job, tile);
+    } else {
+      draw_gbuffer(job, tile);
+      shade_tile(job, tile);
+    }
+    read_tile(job, tile, pixels);
   }
-  read_tile(job, tile, pixels);
+  if (job.coated) {
+    add_coats(job, {reinterpret_cast<glm::vec4*>(pixels), size_t{tile.width_px} * tile.height_px});
+  }
   return absl::OkStatus();
 }
 
@@ -124,8 +130,9 @@ absl::StatusOr<Frame> ScenePainter::paint(const FrameRequest& request, const std
         fmt::format("settings.background.environment: {} has no environment to show", scene.name));
   }
   const bool picture = request.format == PixelFormat::kSrgb8;
-  const bool developed = picture && needs_developing(request.settings);
-  Job job{request, cancelled, needs_of(request), developed ? PixelFormat::kLinearFloat : request.format};
+  const bool coated = has_coats(request);
+  const bool developed = picture && (coated || needs_developing(request.settings));
+  Job job{request, cancelled, needs_of(request), developed ? PixelFormat::kLinearFloat : request.format, coated};
   const Technique technique = request.settings.technique;
   job.variant.lit = (casts_shadows(request.settings) || scene.environment != nullptr) &&
                     (technique == Technique::kPaper || technique == Technique::kLambert);

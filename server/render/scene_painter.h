@@ -9,6 +9,7 @@
 
 #include "absl/status/statusor.h"
 #include "render/channels.h"
+#include "render/coat_layer.h"
 #include "render/frame.h"
 #include "render/mesh_state.h"
 #include "render/shading.h"
@@ -33,6 +34,7 @@ class ScenePainter {
     const std::atomic<bool>& cancelled;
     ChannelNeeds needs;  ///< of the pass at hand
     PixelFormat format;  ///< that is drawn
+    bool coated = false;
     Variant variant{};
     std::vector<DrawnMesh> meshes{};
     geometry::Bounds bounds_mm{};
@@ -76,7 +78,12 @@ class ScenePainter {
   // scene_painter_reference.cc
   absl::Status draw_reference_tile(Job& job, const Tile& tile, uint8_t* pixels);
 
+  // scene_painter_coat.cc
+  static bool has_coats(const FrameRequest& request);
+  void add_coats(Job& job, std::span<glm::vec4> radiance);
+
   Shading shading_;
+  CoatLayer coats_;
   std::map<std::string, MeshState> meshes_;
   std::optional<ViewTargets> targets_;
   ShadowScene shadows_;

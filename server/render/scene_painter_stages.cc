@@ -11,13 +11,6 @@ namespace {
 // Beyond this, meshes that the frame does not show lose what was kept of them.
 constexpr size_t kMaxKeptBytes = size_t{2} << 30;
 
-const optics::Coefficients& material_of(const scene::SceneSnapshot& scene, const scene::Mesh& mesh) {
-  static const optics::Coefficients kFallback;
-  const auto found = std::find_if(scene.materials.begin(), scene.materials.end(),
-                                  [&](const scene::Material& m) { return m.name == mesh.material; });
-  return found == scene.materials.end() ? kFallback : found->coefficients;
-}
-
 // What the expansions of the integral take in float.
 constexpr float kLargestIntegral_mm = 1e7f;
 
@@ -34,7 +27,9 @@ void ScenePainter::gather_meshes(Job& job) {
   for (const auto& mesh : scene.meshes) {
     MeshState& state = meshes_[mesh->name];
     state.placed.update(*mesh, scene.millimetres_per_unit, job.clock);
-    job.meshes.push_back({mesh.get(), &state, material_of(scene, *mesh)});
+    const scene::Material* material = scene::material_of(scene, *mesh);
+    job.meshes.push_back({mesh.get(), &state, material == nullptr ? optics::Coefficients{} : material->coefficients,
+                          material == nullptr ? std::nullopt : material->coat});
   }
   job.bounds_mm = job.meshes.front().state->placed.bounds_mm();
   for (const DrawnMesh& drawn : job.meshes) {

@@ -33,12 +33,14 @@ struct ScenePatch {
 struct NewMaterial {
   optics::MaterialForm form;
   optics::Profile profile = optics::Profile::kDipole;
+  std::optional<optics::Coat> coat{};
 };
 
 /// What is given replaces what was there.
 struct MaterialPatch {
   std::optional<optics::MaterialForm> form;
   std::optional<optics::Profile> profile;
+  std::optional<std::optional<optics::Coat>> coat;  ///< an empty one takes the coat off
 };
 
 /// A whole light, or parts of one that is a point light.

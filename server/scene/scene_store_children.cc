@@ -27,6 +27,7 @@ void set_form(Material* material, const optics::MaterialForm& form, optics::Prof
 absl::StatusOr<Changed<Material>> SceneStore::create_material(const Reference& parent, const NewMaterial& material) {
   Material created;
   set_form(&created, material.form, material.profile);
+  created.coat = material.coat;
   const auto scene = mutate(parent, [&](SceneSnapshot& draft) {
     absl::Status room = check_room_for_one(draft.materials, Collection::kMaterials, limits_.max_materials_per_scene);
     if (!room.ok()) return room;
@@ -52,6 +53,7 @@ absl::StatusOr<Changed<Material>> SceneStore::update_material(const Reference& m
     const auto found = find_child(draft.materials, material.name);
     if (found == draft.materials.end()) return not_found(material, "material");
     set_form(&*found, patch.form.value_or(found->form), patch.profile.value_or(found->coefficients.profile));
+    if (patch.coat.has_value()) found->coat = *patch.coat;
     changed = {*found, draft.revision};
     return absl::OkStatus();
   });

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "geometry/topology.h"
 #include "glm/mat4x4.hpp"
 #include "glm/vec3.hpp"
+#include "optics/coat.h"
 #include "optics/environment.h"
 #include "optics/material.h"
 
@@ -21,6 +23,7 @@ struct Material {
   optics::MaterialForm form;
   optics::Coefficients coefficients;    ///< what the form comes to, with the profile that was asked for
   std::vector<std::string> warnings{};  ///< what is doubtful about them, a sentence each
+  std::optional<optics::Coat> coat{};   ///< not given: none
 };
 
 /// Shines in all directions; irradiance falls with the square of the distance in millimetres.
@@ -80,5 +83,13 @@ struct SceneSnapshot {
   std::vector<Light> lights;
   std::shared_ptr<const Environment> environment;  ///< null: none
 };
+
+/// What `mesh` is made of; null where the scene has no such material.
+inline const Material* material_of(const SceneSnapshot& scene, const Mesh& mesh) {
+  for (const Material& material : scene.materials) {
+    if (material.name == mesh.material) return &material;
+  }
+  return nullptr;
+}
 
 }  // namespace diaphane::scene

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -85,11 +86,17 @@ inline constexpr NamedProfile kProfiles[] = {{"dipole", Profile::kDipole},
                                              {"better-dipole", Profile::kBetterDipole},
                                              {"normalized-diffusion", Profile::kNormalizedDiffusion}};
 
+/// The body's own interface, smooth to rough (GGX): reflects lights and environment. What enters stays the same.
+struct Coat {
+  float roughness = 0;  ///< GGX α, 0..1; 0: a mirror
+};
+
 /// What a body is made of: the name of a preset (Client::material_presets), free coefficients, or another form that the
 /// server turns into them.
 struct Material {
   std::variant<std::string, Coefficients, DiffuseColor, Volume> model = std::string(kDefaultPreset);
   Profile profile = Profile::kDipole;
+  std::optional<Coat> coat{};  ///< not given: none
 };
 
 /// A material that the server knows by name.

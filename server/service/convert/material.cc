@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -127,6 +128,13 @@ absl::StatusOr<optics::MaterialForm> form_from_proto(const v1::Material& message
   return base::invalid_field("material.model", "preset, coefficients, diffuse_color or volume", "none");
 }
 
+absl::StatusOr<std::optional<optics::Coat>> coat_from_proto(const v1::Material& message) {
+  if (!message.has_coat()) return std::optional<optics::Coat>();
+  absl::Status within = check_within("material.coat.roughness", message.coat().roughness(), 0, 1);
+  if (!within.ok()) return within;
+  return std::optional<optics::Coat>({.roughness = message.coat().roughness()});
+}
+
 absl::StatusOr<optics::Profile> from_proto(v1::Profile profile) {
   switch (profile) {
     case v1::PROFILE_UNSPECIFIED:
@@ -188,19 +196,21 @@ void to_proto(const optics::MaterialForm& form, v1::Material& message) {
 }  // namespace
 
 absl::StatusOr<scene::NewMaterial> from_proto(const v1::Material& message) {
-  if (message.has_coat()) return absl::UnimplementedError("material.coat: coats are not drawn yet");
   if (message.has_textures()) return absl::UnimplementedError("material.textures: textures are not drawn yet");
   auto form = form_from_proto(message);
   if (!form.ok()) return form.status();
   const auto profile = from_proto(message.profile());
   if (!profile.ok()) return profile.status();
-  return scene::NewMaterial{*std::move(form), *profile};
+  const auto coat = coat_from_proto(message);
+  if (!coat.ok()) return coat.status();
+  return scene::NewMaterial{*std::move(form), *profile, *coat};
 }
 
 absl::StatusOr<scene::MaterialPatch> from_proto(const v1::UpdateMaterialRequest& message) {
   const google::protobuf::FieldMask& mask = message.update_mask();
   constexpr std::string_view kForms[] = {"model", "preset", "coefficients", "diffuse_color", "volume"};
-  absl::Status known = check_mask(mask, {"model", "preset", "coefficients", "diffuse_color", "volume", "profile"});
+  absl::Status known =
+      check_mask(mask, {"model", "preset", "coefficients", "diffuse_color", "volume", "profile", "coat"});
   if (!known.ok()) return known;
   scene::MaterialPatch patch;
   if (std::any_of(std::begin(kForms), std::end(kForms), [&](std::string_view path) { return names(mask, path); })) {
@@ -213,6 +223,11 @@ absl::StatusOr<scene::MaterialPatch> from_proto(const v1::UpdateMaterialRequest&
     if (!profile.ok()) return profile.status();
     patch.profile = *profile;
   }
+  if (names(mask, "coat")) {
+    const auto coat = coat_from_proto(message.material());
+    if (!coat.ok()) return coat.status();
+    patch.coat = *coat;
+  }
   return patch;
 }
 
@@ -220,6 +235,7 @@ void to_proto(const scene::Material& material, v1::Material& message) {
   message.set_name(material.name);
   to_proto(material.form, message);
   message.set_profile(to_proto(material.coefficients.profile));
+  if (material.coat.has_value()) message.mutable_coat()->set_roughness(material.coat->roughness);
   to_proto(material.coefficients, *message.mutable_resolved());
   for (const std::string& warning : material.warnings) message.add_warnings(warning);
 }

@@ -76,6 +76,21 @@ TEST_F(CliWithServerTest, MaterialsByColourMeanTheSameInASceneFileAndAsOptions) 
   EXPECT_FALSE(read_file(folder_ / "a.png") == read_file(folder_ / "b.png")) << "the profile shows";
 }
 
+TEST_F(CliWithServerTest, CoatsReflect) {
+  const auto with = [&](const std::string& output, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"-o", output, "--point-light", "0,0,100,9000,9000,9000"};
+    words.insert(words.end(), more.begin(), more.end());
+    return with_server(render(words));
+  };
+  ASSERT_EQ(run(with("bare.png", {})).exit_code, 0);
+  ASSERT_EQ(run(with("coat.png", {"--coat"})).exit_code, 0);
+  ASSERT_EQ(run(with("rough.png", {"--coat", "--roughness", "0.8"})).exit_code, 0);
+  EXPECT_NE(read_file(folder_ / "bare.png"), read_file(folder_ / "coat.png"));
+  EXPECT_NE(read_file(folder_ / "rough.png"), read_file(folder_ / "coat.png"));
+  EXPECT_THAT(refusal(4, with("x.png", {"--coat", "--roughness", "2"})), HasSubstr("material.coat.roughness"));
+  EXPECT_THAT(refusal(2, with("x.png", {"--roughness", "0.5"})), HasSubstr("--coat"));
+}
+
 TEST_F(CliWithServerTest, EveryFormatIsWhatItsNameSays) {
   ASSERT_EQ(run(with_server(render({"-o", "x.jpg"}))).exit_code, 0);
   EXPECT_THAT(read_file(folder_ / "x.jpg"), StartsWith("\xff\xd8\xff"));

@@ -249,6 +249,10 @@ TEST_F(BadRequestTest, RefusesMaterials) {
                           {"material.volume.attenuation_distance_mm", "0", "1e-06..1000000"});
   expect_material_refused(with_volume(0.5f, 1, 0, 0), {"material.volume.multiscatter_color", "0, 0, 0", "above 0"});
   expect_material_refused(with_volume(0.5f, 1, 0.5f, 1), {"material.volume.scatter_anisotropy", "1", "-0.99..0.99"});
+  expect_material_refused([](auto& m) { m.mutable_coat()->set_roughness(1.5f); },
+                          {"material.coat.roughness", "1.5", "0..1"});
+  expect_material_refused([](auto& m) { m.mutable_coat()->set_roughness(kNan); },
+                          {"material.coat.roughness", "nan", "0..1"});
   expect_material_refused([](auto& m) { m.set_profile(static_cast<v1::Profile>(9)); },
                           {"material.profile", "9", "a value of Profile"});
 }

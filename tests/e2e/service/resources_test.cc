@@ -1,6 +1,7 @@
 // What the services do with good input.
 #include <gmock/gmock.h>
 
+#include <optional>
 #include <set>
 
 #include "tests/e2e/service/test_server.h"
@@ -117,6 +118,35 @@ TEST_F(ResourcesTest, ResolvesColoursAndWarnsOfThemInTheAnswer) {
   EXPECT_TRUE(updated.material().has_diffuse_color());
   EXPECT_EQ(updated.material().profile(), v1::PROFILE_BETTER_DIPOLE);
   EXPECT_NE(updated.material().resolved().absorption_mm().x(), resolved.absorption_mm().x());
+}
+
+TEST_F(ResourcesTest, PutsCoatsOnMaterialsAndTakesThemOff) {
+  v1::CreateMaterialRequest request;
+  request.set_parent(create_scene().name());
+  request.mutable_material()->set_preset("porcelain");
+  request.mutable_material()->mutable_coat()->set_roughness(0.25f);
+  v1::MaterialResponse created;
+  {
+    Context context;
+    ASSERT_TRUE(scenes_->CreateMaterial(&context, request, &created).ok());
+  }
+  ASSERT_TRUE(created.material().has_coat());
+  EXPECT_EQ(created.material().coat().roughness(), 0.25f);
+  const auto update = [&](const char* path, std::optional<float> roughness) {
+    v1::UpdateMaterialRequest message;
+    message.mutable_material()->set_name(created.material().name());
+    message.mutable_material()->set_profile(v1::PROFILE_BETTER_DIPOLE);
+    if (roughness) message.mutable_material()->mutable_coat()->set_roughness(*roughness);
+    message.mutable_update_mask()->add_paths(path);
+    Context context;
+    v1::MaterialResponse updated;
+    EXPECT_TRUE(scenes_->UpdateMaterial(&context, message, &updated).ok());
+    return updated.material();
+  };
+  EXPECT_EQ(update("profile", std::nullopt).coat().roughness(), 0.25f);
+  EXPECT_EQ(update("coat", 0.0f).coat().roughness(), 0);
+  EXPECT_EQ(update("coat", 0.0f).preset(), "porcelain");
+  EXPECT_FALSE(update("coat", std::nullopt).has_coat());
 }
 
 TEST_F(ResourcesTest, ListsEveryPresetWithItsSource) {

@@ -25,6 +25,8 @@ absl::StatusOr<Section> figure_opaque(const Studio& studio, const FigureOptions&
 absl::StatusOr<Section> figure_terms(const Studio& studio, const FigureOptions& options);
 /// Fig. 10: a morph to the bounding sphere, lit from behind.
 absl::StatusOr<Section> figure_morph(const Studio& studio, const FigureOptions& options);
+/// Fig. 11: porcelain in an environment, a morph; coats; every preset there.
+absl::StatusOr<Section> figure_environment(const Studio& studio, const FigureOptions& options);
 /// Every preset on one mesh.
 absl::StatusOr<Section> figure_materials(const Studio& studio, const FigureOptions& options);
 /// Materials given by colour and mean free path, and the coefficients that they come to.

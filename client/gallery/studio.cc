@@ -14,6 +14,9 @@ absl::StatusOr<MeshHandle> furnish(const Scene& scene, const Still& still) {
   for (const Light& light : still.lights) {
     if (const auto handle = scene.add_light(light); !handle.ok()) return handle.status();
   }
+  if (still.environment) {
+    if (const auto revision = scene.set_environment(*still.environment); !revision.ok()) return revision.status();
+  }
   absl::StatusOr<MeshHandle> first = absl::InvalidArgumentError("still: must have a body, got none");
   for (const Body& body : still.bodies) {
     absl::StatusOr<MeshHandle> handle = add_body(scene, body);

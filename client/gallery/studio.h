@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "diaphane/client.h"
+#include "diaphane/environment.h"
 #include "diaphane/mesh_data.h"
 #include "diaphane/private_server.h"
 #include "gallery/linear_frame.h"
@@ -24,6 +25,7 @@ struct Still {
   std::vector<Body> bodies;
   double millimetres_per_unit = 1;
   std::vector<Light> lights;
+  std::optional<EnvironmentMap> environment;
   Camera camera;
   Size size;
   /// Positions of the first body, one frame after the other; none: as it is.

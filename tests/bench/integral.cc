@@ -46,7 +46,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kColumns = {
     {"E + flux", {"shadow", "irradiance", "flux"}},
     {"refit", {"refit"}},
     {"gather", {"gather", "slab"}},
-    {"draw", {"upload", "draw", "read_back"}}};
+    {"draw", {"upload", "draw", "read_back", "gbuffer", "coat", "develop"}}};
 
 using Times = std::map<std::string, std::vector<double>>;
 
@@ -71,14 +71,29 @@ void render(render::FrameRenderer& renderer, const render::FrameRequest& request
   (*times)["update"].push_back(update);
 }
 
-/// What a row has beside the plain frame: nothing (-), the slab correction, or a profile.
-const std::vector<std::string> kExtras = {"-", "slab", "better-dipole", "normalized-diffusion"};
+/// What a row has beside the plain frame: nothing (-), the slab correction, a profile, an environment, or a coat in the
+/// light or in an environment.
+const std::vector<std::string> kExtras = {"-",           "slab", "better-dipole",   "normalized-diffusion",
+                                          "environment", "coat", "coat+environment"};
+
+/// A sky without lamps, so that the row tells the harmonics and the map alone.
+std::shared_ptr<const scene::Environment> sky() {
+  optics::LatLongMap map{512, 256, {}};
+  for (uint32_t y = 0; y < map.height_px; ++y) {
+    for (uint32_t x = 0; x < map.width_px; ++x) map.radiance.push_back(0.5f + 0.2f * map.direction(x, y));
+  }
+  auto light = std::make_shared<const optics::EnvironmentLight>(optics::EnvironmentLight{optics::project(map), {}});
+  return std::make_shared<const scene::Environment>(
+      scene::Environment{"environment", std::make_shared<const optics::LatLongMap>(std::move(map)), std::move(light)});
+}
 
 Times measure(const testing::Mesh& mesh, const Settings& settings, bool shadows, const std::string& extra,
               render::FrameRenderer& renderer) {
-  const bool profile = extra != "-" && extra != "slab";
+  const bool profile = extra == "better-dipole" || extra == "normalized-diffusion";
   const auto scene = bench::make_scene(mesh, profile ? settings.material + "+" + extra : settings.material,
                                        bench::lights(settings.coloured));
+  if (extra.ends_with("environment")) scene->environment = sky();
+  if (extra.starts_with("coat")) scene->materials.front().coat = optics::Coat{0.1f};
   bench::LambertFrame lambert(mesh.triangles, settings.size_px);
   render::FrameRequest request;
   request.width_px = request.height_px = settings.size_px;
@@ -217,7 +232,7 @@ int main(int argc, char** argv) {
   auto* threads = list("--threads", settings.threads, "this many, in this process alone; default: one and two");
   list("--simd", settings.simd, "levels to compare, such as AVX2,SSE4; default the best");
   list("--shadows", settings.shadows, "off,on")->check(CLI::IsMember({"on", "off"}));
-  list("--extras", settings.extras, "rows: - (the plain frame), slab, better-dipole, normalized-diffusion")
+  list("--extras", settings.extras, "rows: - (the plain frame), slab, a profile, environment, coat, coat+environment")
       ->check(CLI::IsMember(diaphane::kExtras));
   app.add_option("--material", settings.material, "preset");
   app.add_option("--quality", settings.quality)->check(CLI::IsMember({"draft", "normal", "fine"}));

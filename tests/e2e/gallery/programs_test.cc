@@ -77,7 +77,7 @@ TEST_F(Gallery, ShowsEveryFigureAsThePaperSaysOfIt) {
   make();
   if (IsSkipped() || HasFatalFailure()) return;
   const std::string page = read_file(folder_ / "page" / "index.html");
-  for (const char* figure : {"fig6", "fig7", "fig8", "fig9", "fig10", "materials", "colors", "techniques"}) {
+  for (const char* figure : {"fig6", "fig7", "fig8", "fig9", "fig10", "fig11", "materials", "colors", "techniques"}) {
     EXPECT_THAT(page, HasSubstr(std::string("<section id=\"") + figure + "\">"));
   }
   EXPECT_THAT(page, testing::Not(HasSubstr("http")));
@@ -109,6 +109,11 @@ TEST_F(Gallery, ShowsEveryFigureAsThePaperSaysOfIt) {
       EXPECT_GT(facts["fig10"]["horns_over_skull"][technique][step], 1) << technique << " " << step;
     }
   }
+  // A coat adds, and what it adds in all does not depend on how rough it is.
+  const json& shown = facts["fig11"]["mean_luminance"];
+  const double bare = shown["none"], rough = shown["rough"], mirror = shown["mirror"];
+  EXPECT_GT(rough, 1.02 * bare);
+  EXPECT_NEAR(rough - bare, mirror - bare, 0.5 * (mirror - bare));
   for (const char* lit : {"front", "back"}) {
     EXPECT_LT(facts["techniques"]["rms_percent"][lit]["integral"][1], 5) << lit;
     EXPECT_GT(facts["techniques"]["rms_percent"][lit]["paper"][1], 5) << lit;

@@ -130,15 +130,17 @@ glm::vec3 radiance_towards(const LatLongMap& map, const glm::vec3& direction) {
   const float down = std::acos(glm::clamp(direction.y, -1.0f, 1.0f)) / std::numbers::pi_v<float>;
   const float x = around * static_cast<float>(map.width_px) - 0.5f, y = down * static_cast<float>(map.height_px) - 0.5f;
   const float left = std::floor(x), above = std::floor(y);
-  const auto width = static_cast<int64_t>(map.width_px), height = static_cast<int64_t>(map.height_px);
-  const auto at = [&](int64_t column, int64_t row) {
-    column = (column % width + width) % width;
-    row = std::clamp<int64_t>(row, 0, height - 1);
-    return map.radiance[static_cast<size_t>(row * width + column)];
+  const auto width = static_cast<int32_t>(map.width_px), height = static_cast<int32_t>(map.height_px);
+  // Both lie within the map or one beyond its edge.
+  const auto column = static_cast<int32_t>(left), row = static_cast<int32_t>(above);
+  const auto wrapped = [&](int32_t c) { return static_cast<size_t>(c < 0 ? c + width : c >= width ? c - width : c); };
+  const size_t columns[] = {wrapped(column), wrapped(column + 1)};
+  const auto along = [&](int32_t r) {
+    const glm::vec3* of_row =
+        map.radiance.data() + static_cast<size_t>(std::clamp(r, 0, height - 1)) * static_cast<size_t>(width);
+    return glm::mix(of_row[columns[0]], of_row[columns[1]], x - left);
   };
-  const auto column = static_cast<int64_t>(left), row = static_cast<int64_t>(above);
-  return glm::mix(glm::mix(at(column, row), at(column + 1, row), x - left),
-                  glm::mix(at(column, row + 1), at(column + 1, row + 1), x - left), y - above);
+  return glm::mix(along(row), along(row + 1), y - above);
 }
 
 Harmonics project(const LatLongMap& map) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "glm/geometric.hpp"
+#include "glm/mat3x3.hpp"
 #include "render/ambient.h"
 #include "render/lights.h"
 #include "render/sample_pattern.h"
@@ -12,7 +13,7 @@
 namespace diaphane::render {
 namespace {
 
-constexpr uint32_t kDraws = 32;
+constexpr size_t kAngles = 64;
 constexpr float kMirror = 0.002f;   // GGX α up to which one draw is enough
 constexpr float kWidening = 4;      // of the solid angle of one of many draws: else their pattern shows
 constexpr size_t kMostTables = 64;  // kept between frames
@@ -29,7 +30,7 @@ class Frame3 {
     y_ = {b, sign + normal.y * normal.y * a, -normal.y};
   }
   glm::vec3 to_local(const glm::vec3& v) const { return {glm::dot(v, x_), glm::dot(v, y_), glm::dot(v, z_)}; }
-  glm::vec3 to_world(const glm::vec3& v) const { return v.x * x_ + v.y * y_ + v.z * z_; }
+  glm::mat3 world_from_local() const { return {x_, y_, z_}; }
 
  private:
   glm::vec3 x_, y_, z_;
@@ -37,11 +38,12 @@ class Frame3 {
 
 /// One point of a coat, and its light.
 struct CoatPoint {
-  const optics::BalancedCoat& coat;
+  const CoatTable& table;
   const CoatLight& light;
   const MapPyramid* pyramid;
   glm::vec3 position_mm, normal;
   Frame3 frame;
+  glm::mat3 map_from_local;
   glm::vec3 to_eye;  ///< z along the normal
 
   glm::vec3 of_lights() const {
@@ -49,7 +51,7 @@ struct CoatPoint {
     for (const LightStorage& of : light.lights) {
       const ArrivingLight arriving = arriving_light(of, position_mm);
       const glm::vec3 to_light = frame.to_local(arriving.towards);
-      const float reflected = coat.reflectance(to_light, to_eye) * std::max(to_light.z, 0.0f);
+      const float reflected = table.coat().reflectance(to_light, to_eye) * std::max(to_light.z, 0.0f);
       if (!(reflected > 0)) continue;
       const float seen = light.shadows == nullptr ? 1.0f : light.shadows->visibility_at(of, position_mm, normal);
       sum += seen * reflected * arriving.irradiance;
@@ -57,34 +59,66 @@ struct CoatPoint {
     return sum;
   }
 
+  glm::vec3 from(const glm::vec3& direction, float solid_angle_sr) const {
+    return pyramid->around(map_from_local * direction, solid_angle_sr);
+  }
+
   /// Weighed so that even light gives R(μ) to the last digit.
   glm::vec3 of_environment() const {
     if (pyramid == nullptr) return glm::vec3(0);
-    const uint32_t draws = coat.alpha() <= kMirror ? 1 : kDraws;
-    const float widening = draws == 1 ? 1.0f : kWidening;
+    const float reflected = light.environment->intensity * table.coat().albedo(to_eye.z);
+    if (table.coat().alpha() <= kMirror) return reflected * from({-to_eye.x, -to_eye.y, to_eye.z}, 0);
+    const float length = std::hypot(to_eye.x, to_eye.y);
+    const glm::vec2 along = length > 0 ? glm::vec2(to_eye) / length : glm::vec2(1, 0);
     glm::vec3 sum(0);
     float weights = 0;
-    for (uint32_t i = 0; i < draws; ++i) {
-      const optics::BalancedCoat::Arrival drawn =
-          coat.arrival(to_eye, draws == 1 ? glm::vec2(0) : sample_place(i, draws));
-      if (!(drawn.weight > 0)) continue;
-      const glm::vec3 of_map = rotated_about_y(frame.to_world(drawn.direction), -light.environment->rotation_deg);
-      sum += drawn.weight * pyramid->around(of_map, widening / (static_cast<float>(draws) * drawn.density));
-      weights += drawn.weight;
+    for (uint32_t i = 0; i < CoatTable::kDraws; ++i) {
+      const CoatTable::Look look = table.look(to_eye.z, i);
+      if (!(look.weight > 0)) continue;
+      const glm::vec3& d = look.direction;
+      const glm::vec3 turned(d.x * along.x - d.y * along.y, d.x * along.y + d.y * along.x, d.z);
+      sum += look.weight * from(glm::normalize(turned), look.solid_angle_sr);
+      weights += look.weight;
     }
-    if (!(weights > 0)) return glm::vec3(0);
-    return light.environment->intensity * coat.albedo(to_eye.z) / weights * sum;
+    return weights > 0 ? reflected / weights * sum : glm::vec3(0);
   }
 };
 
 }  // namespace
 
-const optics::BalancedCoat& CoatLayer::balanced(const optics::Coat& coat, float refractive_index) {
+CoatTable::CoatTable(const optics::Coat& coat, float refractive_index) : coat_(coat, refractive_index) {
+  looks_.reserve(kAngles * kDraws);
+  for (size_t angle = 0; angle < kAngles; ++angle) {
+    const float root = (static_cast<float>(angle) + 0.5f) / static_cast<float>(kAngles);
+    const float cosine = root * root;
+    const glm::vec3 to_eye(std::sqrt(1 - cosine * cosine), 0, cosine);
+    for (uint32_t i = 0; i < kDraws; ++i) {
+      const optics::BalancedCoat::Arrival drawn = coat_.arrival(to_eye, sample_place(i, kDraws));
+      const float solid_angle_sr = drawn.weight > 0 ? kWidening / (static_cast<float>(kDraws) * drawn.density) : 0;
+      looks_.push_back({drawn.direction, drawn.weight, solid_angle_sr});
+    }
+  }
+}
+
+CoatTable::Look CoatTable::look(float cosine, uint32_t draw) const {
+  const float at = std::sqrt(cosine) * static_cast<float>(kAngles) - 0.5f;
+  const float below = std::clamp(std::floor(at), 0.0f, static_cast<float>(kAngles - 2));
+  const Look& a = looks_[static_cast<size_t>(below) * kDraws + draw];
+  const Look& b = looks_[(static_cast<size_t>(below) + 1) * kDraws + draw];
+  // One that comes from below at one of the angles fades out, and says nothing of its direction.
+  const float share = std::clamp(at - below, 0.0f, 1.0f);
+  if (!(a.weight > 0)) return {b.direction, b.weight * share, b.solid_angle_sr};
+  if (!(b.weight > 0)) return {a.direction, a.weight * (1 - share), a.solid_angle_sr};
+  return {glm::mix(a.direction, b.direction, share), glm::mix(a.weight, b.weight, share),
+          glm::mix(a.solid_angle_sr, b.solid_angle_sr, share)};
+}
+
+const CoatTable& CoatLayer::table_of(const optics::Coat& coat, float refractive_index) {
   const std::pair<float, float> key(coat.roughness, refractive_index);
-  const auto found = balanced_.find(key);
-  if (found != balanced_.end()) return found->second;
-  if (balanced_.size() >= kMostTables) balanced_.clear();
-  return balanced_.emplace(key, optics::BalancedCoat(coat, refractive_index)).first->second;
+  const auto found = tables_.find(key);
+  if (found != tables_.end()) return found->second;
+  if (tables_.size() >= kMostTables) tables_.clear();
+  return tables_.emplace(key, CoatTable(coat, refractive_index)).first->second;
 }
 
 const MapPyramid* CoatLayer::pyramid_of(const CoatLight& light) {
@@ -98,8 +132,11 @@ const MapPyramid* CoatLayer::pyramid_of(const CoatLight& light) {
 
 void CoatLayer::add(const optics::Coat& coat, float refractive_index, float mesh_id, const CoatLight& light,
                     const glm::vec3& eye_mm, const ChannelTile& tile, std::span<glm::vec4> radiance) {
-  const optics::BalancedCoat& table = balanced(coat, refractive_index);
+  const CoatTable& table = table_of(coat, refractive_index);
   const MapPyramid* pyramid = pyramid_of(light);
+  const float turn_deg = light.environment == nullptr ? 0 : -light.environment->rotation_deg;
+  const glm::mat3 map_from_world(rotated_about_y({1, 0, 0}, turn_deg), glm::vec3(0, 1, 0),
+                                 rotated_about_y({0, 0, 1}, turn_deg));
   tbb::parallel_for(tbb::blocked_range<size_t>(0, radiance.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
     for (size_t p = range.begin(); p != range.end(); ++p) {
       if (tile.position_mm[p].w != mesh_id) continue;
@@ -107,7 +144,14 @@ void CoatLayer::add(const optics::Coat& coat, float refractive_index, float mesh
       const Frame3 frame(normal);
       glm::vec3 to_eye = frame.to_local(glm::normalize(eye_mm - position_mm));
       to_eye.z = std::max(to_eye.z, kGrazing);
-      const CoatPoint point{table, light, pyramid, position_mm, normal, frame, glm::normalize(to_eye)};
+      const CoatPoint point{table,
+                            light,
+                            pyramid,
+                            position_mm,
+                            normal,
+                            frame,
+                            map_from_world * frame.world_from_local(),
+                            glm::normalize(to_eye)};
       radiance[p] += glm::vec4(point.of_lights() + point.of_environment(), 0);
     }
   });

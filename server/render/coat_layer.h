@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "glm/vec4.hpp"
 #include "optics/coat.h"
@@ -25,20 +26,43 @@ struct CoatLight {
   const ShadowScene* shadows;             ///< ready for rays; null: unshadowed
 };
 
+/// A coat, and the directions in which it looks at an environment, for eyes at 64 angles. Immutable.
+class CoatTable {
+ public:
+  static constexpr uint32_t kDraws = 16;
+
+  /// From where light may come, with z along the normal and the eye above +x; by how much it counts; how far around.
+  struct Look {
+    glm::vec3 direction{0};  ///< about unit
+    float weight = 0;
+    float solid_angle_sr = 0;
+  };
+
+  CoatTable(const optics::Coat& coat, float refractive_index);
+
+  const optics::BalancedCoat& coat() const { return coat_; }
+  /// Look `draw` of an eye at that cosine, between the two nearest angles.
+  Look look(float cosine, uint32_t draw) const;
+
+ private:
+  optics::BalancedCoat coat_;
+  std::vector<Look> looks_;  ///< [angle][draw], evenly in the root of the cosine
+};
+
 /// Keeps tables and the pyramid of a map from frame to frame. Render thread only.
 class CoatLayer {
  public:
   /// Adds what the coat of one mesh sends to `eye_mm` to those of `radiance` (one a pixel of `tile`, linear, alpha 1)
   /// that show it: `mesh_id` in the tile's positions. Point lights and lamps make one highlight each; the environment
-  /// is looked up in 32 directions, in one by a mirror, and nothing stands before it. Spread over all cores.
+  /// is looked up in 16 directions, in one by a mirror, and nothing stands before it. Spread over all cores.
   void add(const optics::Coat& coat, float refractive_index, float mesh_id, const CoatLight& light,
            const glm::vec3& eye_mm, const ChannelTile& tile, std::span<glm::vec4> radiance);
 
  private:
-  const optics::BalancedCoat& balanced(const optics::Coat& coat, float refractive_index);
+  const CoatTable& table_of(const optics::Coat& coat, float refractive_index);
   const MapPyramid* pyramid_of(const CoatLight& light);
 
-  std::map<std::pair<float, float>, optics::BalancedCoat> balanced_;
+  std::map<std::pair<float, float>, CoatTable> tables_;
   std::optional<MapPyramid> pyramid_;
 };
 

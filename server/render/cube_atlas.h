@@ -31,8 +31,8 @@ class CubeAtlas {
   CubeAtlas(AtlasKey key, const BoxUniforms& box);
 
   /// Pass 1: `draw_mesh` six times with `program` (atlas.vert + atlas.frag), MaterialUniforms, BoxUniforms and the
-  /// lights bound.
-  void render(const gl::Program& program, const std::function<void()>& draw_mesh);
+  /// lights bound; it is told where the projection turns left into right.
+  void render(const gl::Program& program, const std::function<void(bool mirrored)>& draw_mesh);
 
   const AtlasKey& key() const { return key_; }
   const BoxUniforms& box() const { return box_; }

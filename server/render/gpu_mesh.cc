@@ -61,9 +61,9 @@ void GpuMesh::update_irradiance(std::span<const glm::vec3> irradiance, const voi
   });
 }
 
-void GpuMesh::draw(bool facing_only) const {
+void GpuMesh::draw(bool facing_only, bool mirrored) const {
   if (facing_only) glEnable(GL_CULL_FACE);
-  glFrontFace(flipped_ ? GL_CW : GL_CCW);
+  glFrontFace(flipped_ != mirrored ? GL_CW : GL_CCW);
   glBindVertexArray(vertex_array_.id());
   glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
   glDisable(GL_CULL_FACE);

@@ -28,8 +28,8 @@ class GpuMesh {
   void update_irradiance(std::span<const glm::vec3> irradiance, const void* source, uint64_t generation,
                          StageClock& clock);
 
-  /// Draws all triangles, or those alone that face the eye.
-  void draw(bool facing_only = false) const;
+  /// Draws all triangles, or those alone that face the eye; `mirrored`: the projection turns left into right.
+  void draw(bool facing_only = false, bool mirrored = false) const;
 
  private:
   std::weak_ptr<const geometry::MeshTopology> topology_;

@@ -96,7 +96,10 @@ void ScenePainter::update_atlas(const DrawnMesh& drawn, Job& job) {
     drawn.state->atlas.emplace(std::move(key), box);
     shading_.bind(box);
     shading_.bind(material_uniforms(drawn.material));
-    drawn.state->atlas->render(shading_.atlas(job.variant), [&] { drawn.state->gpu.draw(); });
+    // The outermost surface of a closed body faces outwards.
+    drawn.state->atlas->render(shading_.atlas(job.variant), [&](bool mirrored) {
+      drawn.state->gpu.draw(drawn.mesh->topology->encloses_volume, mirrored);
+    });
     glFinish();
   });
 }

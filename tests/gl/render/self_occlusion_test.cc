@@ -105,13 +105,13 @@ TEST(SelfOcclusion, AgreesWithDepthOnTheBunny) {
   const BoxUniforms fine_box = fit_box(placed.bounds_mm(), kFine_px);
   CubeAtlas fine({0, {}, 1.5f, kFine_px}, fine_box);
   shading->bind(fine_box);
-  fine.render(shading->atlas(), [&] { mesh.draw(); });
+  fine.render(shading->atlas(), [&](bool) { mesh.draw(); });
   const std::vector<float> fine_surface = read_layers(fine.surface(), kFine_px);
 
   const BoxUniforms box = fit_box(placed.bounds_mm(), 256);
   CubeAtlas atlas({0, {}, 1.5f, 256}, box);
   shading->bind(box);
-  atlas.render(shading->atlas(), [&] { mesh.draw(); });
+  atlas.render(shading->atlas(), [&](bool) { mesh.draw(); });
 
   constexpr uint32_t kSide = 256;
   const auto points =

@@ -34,12 +34,12 @@ class Sight {
   float reach_;
 };
 
-}  // namespace
-
 glm::vec3 backdrop_radiance(const scene::Environment& environment, const glm::vec3& direction) {
   return environment.intensity *
          optics::radiance_towards(*environment.map, rotated_about_y(direction, -environment.rotation_deg));
 }
+
+}  // namespace
 
 void lay_over_environment(const scene::Environment& environment, const scene::Camera& camera, uint32_t samples,
                           base::ImageF& picture) {

@@ -60,7 +60,7 @@ struct CoatPoint {
   }
 
   glm::vec3 from(const glm::vec3& direction, float solid_angle_sr) const {
-    return pyramid->around(map_from_local * direction, solid_angle_sr);
+    return pyramid->around(*light.environment->map, map_from_local * direction, solid_angle_sr);
   }
 
   /// Weighed so that even light gives R(μ) to the last digit.
@@ -121,19 +121,23 @@ const CoatTable& CoatLayer::table_of(const optics::Coat& coat, float refractive_
   return tables_.emplace(key, CoatTable(coat, refractive_index)).first->second;
 }
 
-const MapPyramid* CoatLayer::pyramid_of(const CoatLight& light) {
-  if (light.environment == nullptr) {
-    pyramid_.reset();
-    return nullptr;
+const MapPyramid* CoatLayer::pyramid(const CoatLight& light) {
+  if (light.environment == nullptr) return nullptr;
+  if (!pyramid_.has_value() || pyramid_of_.lock() != light.environment->map) {
+    pyramid_.emplace(*light.environment->map);
+    pyramid_of_ = light.environment->map;
   }
-  if (!pyramid_.has_value() || pyramid_->map() != light.environment->map) pyramid_.emplace(light.environment->map);
   return &*pyramid_;
+}
+
+void CoatLayer::forget_orphans() {
+  if (pyramid_of_.expired()) pyramid_.reset();
 }
 
 void CoatLayer::add(const optics::Coat& coat, float refractive_index, float mesh_id, const CoatLight& light,
                     const glm::vec3& eye_mm, const ChannelTile& tile, std::span<glm::vec4> radiance) {
   const CoatTable& table = table_of(coat, refractive_index);
-  const MapPyramid* pyramid = pyramid_of(light);
+  const MapPyramid* coarser = pyramid(light);
   const float turn_deg = light.environment == nullptr ? 0 : -light.environment->rotation_deg;
   const glm::mat3 map_from_world(rotated_about_y({1, 0, 0}, turn_deg), glm::vec3(0, 1, 0),
                                  rotated_about_y({0, 0, 1}, turn_deg));
@@ -141,12 +145,14 @@ void CoatLayer::add(const optics::Coat& coat, float refractive_index, float mesh
     for (size_t p = range.begin(); p != range.end(); ++p) {
       if (tile.position_mm[p].w != mesh_id) continue;
       const glm::vec3 position_mm(tile.position_mm[p]), normal(tile.normal[p]);
+      // A vertex without area has no direction.
+      if (!(glm::dot(normal, normal) > 0)) continue;
       const Frame3 frame(normal);
       glm::vec3 to_eye = frame.to_local(glm::normalize(eye_mm - position_mm));
       to_eye.z = std::max(to_eye.z, kGrazing);
       const CoatPoint point{table,
                             light,
-                            pyramid,
+                            coarser,
                             position_mm,
                             normal,
                             frame,

@@ -58,11 +58,15 @@ class CoatLayer {
   void add(const optics::Coat& coat, float refractive_index, float mesh_id, const CoatLight& light,
            const glm::vec3& eye_mm, const ChannelTile& tile, std::span<glm::vec4> radiance);
 
+  /// Drops what was made of a map that is no more.
+  void forget_orphans();
+
  private:
   const CoatTable& table_of(const optics::Coat& coat, float refractive_index);
-  const MapPyramid* pyramid_of(const CoatLight& light);
+  const MapPyramid* pyramid(const CoatLight& light);
 
   std::map<std::pair<float, float>, CoatTable> tables_;
+  std::weak_ptr<const optics::LatLongMap> pyramid_of_;
   std::optional<MapPyramid> pyramid_;
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "glm/common.hpp"
 #include "tbb/parallel_for.h"
@@ -11,7 +10,7 @@
 namespace diaphane::render {
 namespace {
 
-/// Both sides halved, rounded up to 1; rows weigh by their solid angle.
+/// Both sides halved, down to 1; rows weigh by their solid angle.
 optics::LatLongMap halved(const optics::LatLongMap& map) {
   optics::LatLongMap half{std::max(map.width_px / 2, 1u), std::max(map.height_px / 2, 1u), {}};
   half.radiance.resize(size_t{half.width_px} * half.height_px);
@@ -33,20 +32,22 @@ optics::LatLongMap halved(const optics::LatLongMap& map) {
 
 }  // namespace
 
-MapPyramid::MapPyramid(std::shared_ptr<const optics::LatLongMap> map) : map_(std::move(map)) {
-  while (level(coarser_.size()).height_px > 1) coarser_.push_back(halved(level(coarser_.size())));
+MapPyramid::MapPyramid(const optics::LatLongMap& map) {
+  for (const optics::LatLongMap* finer = &map; finer->height_px > 1; finer = &coarser_.back()) {
+    coarser_.push_back(halved(*finer));
+  }
 }
 
-glm::vec3 MapPyramid::around(const glm::vec3& direction, float solid_angle_sr) const {
+glm::vec3 MapPyramid::around(const optics::LatLongMap& map, const glm::vec3& direction, float solid_angle_sr) const {
   const float pixel_sr =
-      4 * std::numbers::pi_v<float> / (static_cast<float>(map_->width_px) * static_cast<float>(map_->height_px));
+      4 * std::numbers::pi_v<float> / (static_cast<float>(map.width_px) * static_cast<float>(map.height_px));
   const float wanted = 0.5f * std::log2(std::max(solid_angle_sr / pixel_sr, 1.0f));
   const float at = std::min(wanted, static_cast<float>(coarser_.size()));
   const auto finer = static_cast<size_t>(at);
-  const glm::vec3 fine = optics::radiance_towards(level(finer), direction);
+  const glm::vec3 fine = optics::radiance_towards(finer == 0 ? map : coarser_[finer - 1], direction);
   const float share = at - static_cast<float>(finer);
   if (share == 0) return fine;
-  return glm::mix(fine, optics::radiance_towards(level(finer + 1), direction), share);
+  return glm::mix(fine, optics::radiance_towards(coarser_[finer], direction), share);
 }
 
 }  // namespace diaphane::render

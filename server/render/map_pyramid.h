@@ -1,27 +1,23 @@
 // A map of radiance at coarser and coarser sizes.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "optics/environment.h"
 
 namespace diaphane::render {
 
-/// Halved until one row is left. Immutable once built; any thread may ask.
+/// What is coarser than a map, halved until one row is left; the map itself stays its owner's. Immutable once built;
+/// any thread may ask.
 class MapPyramid {
  public:
-  explicit MapPyramid(std::shared_ptr<const optics::LatLongMap> map);
+  explicit MapPyramid(const optics::LatLongMap& map);
 
-  /// Mean radiance around a unit direction of the map, over about `solid_angle_sr`; between levels linear.
-  glm::vec3 around(const glm::vec3& direction, float solid_angle_sr) const;
-
-  const std::shared_ptr<const optics::LatLongMap>& map() const { return map_; }
+  /// Mean radiance around a unit direction of `map`, that it was built of, over about `solid_angle_sr`; between levels
+  /// linear.
+  glm::vec3 around(const optics::LatLongMap& map, const glm::vec3& direction, float solid_angle_sr) const;
 
  private:
-  const optics::LatLongMap& level(size_t index) const { return index == 0 ? *map_ : coarser_[index - 1]; }
-
-  std::shared_ptr<const optics::LatLongMap> map_;
   std::vector<optics::LatLongMap> coarser_;
 };
 

@@ -23,6 +23,7 @@ bool beyond(const geometry::Bounds& bounds_mm, float limit_mm) {
 
 void ScenePainter::gather_meshes(Job& job) {
   std::erase_if(meshes_, [](const auto& entry) { return entry.second.placed.orphaned(); });
+  coats_.forget_orphans();
   const scene::SceneSnapshot& scene = *job.request.scene;
   for (const auto& mesh : scene.meshes) {
     MeshState& state = meshes_[mesh->name];

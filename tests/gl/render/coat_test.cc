@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "optics/dipole.h"
-#include "render/gl_renderer.h"
 #include "tests/gl/render/scenes.h"
+#include "tests/gl/render/shared_renderer.h"
 
 namespace diaphane::render {
 namespace {
@@ -14,18 +14,8 @@ namespace {
 constexpr uint32_t kWidth = 48, kHeight = 32;
 constexpr float kTurnedAway = 0.01f;  // the cosine to the eye below which an interpolated normal is a silhouette's
 
-class CoatedFrames : public testing::Test {
+class CoatedFrames : public SharedRenderer {
  protected:
-  static void SetUpTestSuite() {
-    auto renderer = make_gl_renderer({.warm_all = false});
-    ASSERT_TRUE(renderer.ok()) << renderer.status();
-    renderer_ = renderer->release();
-  }
-  static void TearDownTestSuite() {
-    delete renderer_;
-    renderer_ = nullptr;
-  }
-
   static std::shared_ptr<const scene::Environment> environment_of(
       const std::function<glm::vec3(const glm::vec3&)>& radiance, float intensity) {
     optics::LatLongMap map{256, 128, {}};
@@ -57,16 +47,6 @@ class CoatedFrames : public testing::Test {
     return with;
   }
 
-  /// R G B A, then position, then normal.
-  static std::vector<float> render(const FrameRequest& request) {
-    auto frame = renderer_->render(request, std::atomic<bool>(false));
-    if (!frame.ok()) {
-      ADD_FAILURE() << frame.status();
-      return {};
-    }
-    return std::get<base::ImageF>(frame->image).values;
-  }
-
   /// What the coat adds at every shown pixel, where it is, and its normal.
   struct Added {
     glm::vec3 light, position, normal;
@@ -87,8 +67,6 @@ class CoatedFrames : public testing::Test {
     EXPECT_GT(added.size(), 100u);
     return added;
   }
-
-  static inline FrameRenderer* renderer_ = nullptr;
 };
 
 TEST_F(CoatedFrames, OfMirrorsShowTheEnvironmentWhereItShouldBe) {
@@ -173,6 +151,15 @@ TEST_F(CoatedFrames, AreTheSameInPicturesAndLinearPixels) {
   EXPECT_NEAR(picture[centre], 255 * (1.055f * std::pow(v, 1 / 2.4f) - 0.055f), 1);
   EXPECT_TRUE(std::any_of(frame->stages.begin(), frame->stages.end(),
                           [](const StageTime& stage) { return stage.stage == "coat" && stage.ran; }));
+}
+
+TEST_F(CoatedFrames, DoNotKeepAnEnvironmentThatTheSceneHasLost) {
+  auto scene = make_scene(make_box({8, 6, 6}, 4), "marble");
+  scene->environment = environment_of([](const glm::vec3&) { return glm::vec3(1); }, 1);
+  const std::weak_ptr<const optics::LatLongMap> map = scene->environment->map;
+  render(request_of(coated(*scene, 0.3f)));
+  scene.reset();
+  EXPECT_TRUE(map.expired());
 }
 
 TEST_F(CoatedFrames, OfLambertHaveNone) {

@@ -7,24 +7,14 @@
 #include "glm/gtc/matrix_transform.hpp"
 #include "glm/trigonometric.hpp"
 #include "render/ambient.h"
-#include "render/gl_renderer.h"
 #include "tests/gl/render/scenes.h"
+#include "tests/gl/render/shared_renderer.h"
 
 namespace diaphane::render {
 namespace {
 
-class EnvironmentFrames : public testing::Test {
+class EnvironmentFrames : public SharedRenderer {
  protected:
-  static void SetUpTestSuite() {
-    auto renderer = make_gl_renderer({.warm_all = false});
-    ASSERT_TRUE(renderer.ok()) << renderer.status();
-    renderer_ = renderer->release();
-  }
-  static void TearDownTestSuite() {
-    delete renderer_;
-    renderer_ = nullptr;
-  }
-
   static std::shared_ptr<const scene::Environment> environment_of(
       const std::function<glm::vec3(const glm::vec3&)>& radiance, float rotation_deg = 0, float intensity = 1) {
     optics::LatLongMap map{128, 64, {}};
@@ -47,18 +37,6 @@ class EnvironmentFrames : public testing::Test {
     request.format = PixelFormat::kLinearFloat;
     return request;
   }
-
-  /// R G B A and the channels of every pixel.
-  static std::vector<float> render(const FrameRequest& request) {
-    auto frame = renderer_->render(request, std::atomic<bool>(false));
-    if (!frame.ok()) {
-      ADD_FAILURE() << frame.status();
-      return {};
-    }
-    return std::get<base::ImageF>(frame->image).values;
-  }
-
-  static inline FrameRenderer* renderer_ = nullptr;
 };
 
 TEST_F(EnvironmentFrames, OfOneRadianceEnterEverywhereAlike) {

@@ -6,6 +6,12 @@ layout(location = ATTRIBUTE_NORMAL) in vec3 normal;
 
 out vec3 world_mm;
 out vec3 world_normal;
+#ifdef TEXTURED
+layout(location = ATTRIBUTE_TEXTURE_COORDINATE) in vec2 coordinate_at_vertex;
+layout(location = ATTRIBUTE_COLOR) in vec3 color_at_vertex;
+out vec2 coordinate;
+out vec3 color;
+#endif
 #ifdef LIT
 layout(location = ATTRIBUTE_IRRADIANCE) in vec3 irradiance_at_vertex;
 out vec3 entering;
@@ -14,6 +20,10 @@ out vec3 entering;
 void main() {
   world_mm = position_mm;
   world_normal = normal;
+#ifdef TEXTURED
+  coordinate = coordinate_at_vertex;
+  color = color_at_vertex;
+#endif
 #ifdef LIT
   entering = irradiance_at_vertex;
 #endif

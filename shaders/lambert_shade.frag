@@ -11,6 +11,10 @@ layout(binding = UNIT_GBUFFER_NORMAL) uniform sampler2D gbuffer_normal;
 layout(binding = UNIT_GBUFFER_IRRADIANCE) uniform sampler2D gbuffer_irradiance;
 #endif
 
+#ifdef TEXTURED
+layout(binding = UNIT_GBUFFER_ALBEDO) uniform sampler2D gbuffer_albedo;
+#endif
+
 layout(location = TARGET_RADIANCE) out vec4 radiance;
 #ifdef CHANNELS
 layout(location = TARGET_IRRADIANCE) out vec4 irradiance_channel;
@@ -32,9 +36,13 @@ void main() {
     e += arriving * max(dot(n, towards), 0.0);
   }
 #endif
-  radiance = vec4(radiance_scale / PI * total_reflectance.rgb * e, 1.0);
+  vec3 radiosity = total_reflectance.rgb * e;
+#ifdef TEXTURED
+  radiosity *= texelFetch(gbuffer_albedo, pixel, 0).rgb;
+#endif
+  radiance = vec4(radiance_scale / PI * radiosity, 1.0);
 #ifdef CHANNELS
   irradiance_channel = vec4(e, 1.0);
-  radiosity_channel = vec4(total_reflectance.rgb * e, 1.0);
+  radiosity_channel = vec4(radiosity, 1.0);
 #endif
 }

@@ -17,6 +17,10 @@ layout(binding = UNIT_GBUFFER_NORMAL) uniform sampler2D gbuffer_normal;
 layout(binding = UNIT_GBUFFER_IRRADIANCE) uniform sampler2D gbuffer_irradiance;
 #endif
 
+#ifdef TEXTURED
+layout(binding = UNIT_GBUFFER_ALBEDO) uniform sampler2D gbuffer_albedo;
+#endif
+
 layout(location = TARGET_RADIANCE) out vec4 radiance;
 #ifdef CHANNELS
 layout(location = TARGET_IRRADIANCE) out vec4 irradiance_channel;
@@ -101,6 +105,9 @@ void main() {
   vec3 radiosity = vec3(0.0);
   if ((terms & TERM_LOCAL) != 0) radiosity += local_radiosity(position.xyz - box_centre_mm.xyz, n, normal.w);
   if ((terms & TERM_GLOBAL) != 0) radiosity += global_radiosity(position.xyz, n);
+#ifdef TEXTURED
+  radiosity *= texelFetch(gbuffer_albedo, pixel, 0).rgb;
+#endif
   float exit_cosine = abs(dot(n, normalize(eye_mm.xyz - position.xyz)));
   float transmittance = fresnel_transmittance(mean_free_path_mm.a, exit_cosine);
   radiance = vec4(radiance_scale * transmittance / PI * radiosity, 1.0);

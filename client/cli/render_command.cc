@@ -1,5 +1,6 @@
 #include "render_command.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,19 +22,47 @@ absl::Status resolve_refractive_index(const Client& client, RenderPlan* plan) {
   if (!plan->refractive_index) return absl::OkStatus();
   absl::StatusOr<std::vector<MaterialPreset>> presets = client.material_presets();
   if (!presets.ok()) return presets.status();
-  const std::string& name = std::get<std::string>(plan->materials.front().model);
+  const std::string& name = std::get<std::string>(plan->materials.front().material.model);
   for (MaterialPreset& preset : *presets) {
     if (preset.name != name) continue;
     preset.coefficients.refractive_index = *plan->refractive_index;
-    plan->materials.front().model = preset.coefficients;
+    plan->materials.front().material.model = preset.coefficients;
     return absl::OkStatus();
   }
   return absl::NotFoundError(fmt::format("--material: must be a preset (see 'diaphane materials'), got '{}'", name));
 }
 
+absl::StatusOr<std::vector<TextureHandle>> upload_textures(const Scene& scene, const RenderPlan& plan,
+                                                           Progress& progress) {
+  std::vector<TextureHandle> handles;
+  for (const TextureData& texture : plan.textures) {
+    progress.step(fmt::format("uploading texture {} of {}", handles.size() + 1, plan.textures.size()));
+    absl::StatusOr<TextureHandle> handle = scene.add_texture(texture);
+    if (!handle.ok()) return handle.status();
+    handles.push_back(*std::move(handle));
+  }
+  return handles;
+}
+
 absl::Status fill_scene(const Scene& scene, const RenderPlan& plan, Progress& progress) {
+  const absl::StatusOr<std::vector<TextureHandle>> textures = upload_textures(scene, plan, progress);
+  if (!textures.ok()) return textures.status();
+  const auto picture = [&](const std::optional<size_t>& index) {
+    return index ? std::optional((*textures)[*index]) : std::nullopt;
+  };
   std::vector<MaterialHandle> materials;
-  for (const Material& material : plan.materials) {
+  for (size_t i = 0; i < plan.materials.size(); ++i) {
+    const bool used =
+        std::find(plan.material_of_mesh.begin(), plan.material_of_mesh.end(), i) != plan.material_of_mesh.end();
+    if (!used) {
+      materials.emplace_back();
+      continue;
+    }
+    const PlannedMaterial& planned = plan.materials[i];
+    Material material = planned.material;
+    material.textures.albedo = picture(planned.albedo);
+    material.textures.normal = picture(planned.normal);
+    material.textures.roughness = picture(planned.roughness);
     absl::StatusOr<MaterialHandle> handle = scene.add_material(material);
     if (!handle.ok()) return handle.status();
     const absl::StatusOr<MaterialInfo> info = scene.material(*handle);

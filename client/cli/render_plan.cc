@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <utility>
 
 #include "diaphane/framing.h"
@@ -27,21 +28,6 @@ Matrix multiply(const Matrix& a, const Matrix& b) {
   return product;
 }
 
-absl::Status read_meshes(const fs::path& path, const Matrix& scene_from_file, size_t material, RenderPlan* plan,
-                         FileUnits* units) {
-  absl::StatusOr<LoadedFile> file = read_mesh_file(path);
-  if (!file.ok()) return with_exit_code(file.status(), kExitFile);
-  units->add(file->millimetres_per_unit);
-  for (const std::string& warning : file->warnings)
-    plan->notes.push_back(fmt::format("{}: {}", path.string(), warning));
-  for (MeshData& mesh : file->meshes) {
-    mesh.scene_from_mesh = multiply(scene_from_file, mesh.scene_from_mesh);
-    plan->meshes.push_back(std::move(mesh));
-    plan->material_of_mesh.push_back(material);
-  }
-  return absl::OkStatus();
-}
-
 constexpr float kDefaultRoughness = 0.1f;
 
 Material material_of(const RenderArguments& arguments) {
@@ -63,34 +49,102 @@ Material material_of(const RenderArguments& arguments) {
   return material;
 }
 
+/// What the command line says of a file's own material.
+void take_material_options(const RenderArguments& arguments, Material* material) {
+  if (arguments.profile) material->profile = *arguments.profile;
+  if (arguments.coat) material->coat = Coat{arguments.roughness.value_or(kDefaultRoughness)};
+  if (!arguments.refractive_index) return;
+  if (auto* color = std::get_if<DiffuseColor>(&material->model)) color->refractive_index = *arguments.refractive_index;
+  if (auto* volume = std::get_if<Volume>(&material->model)) volume->refractive_index = *arguments.refractive_index;
+}
+
+/// Adds meshes to a plan, with the materials and pictures that their files bring along.
+class MeshPlanner {
+ public:
+  MeshPlanner(RenderPlan* plan, FileUnits* units) : plan_(plan), units_(units) {}
+
+  /// `material`: of all meshes; none: the file's own, or else `otherwise`. `arguments`, where given, change those.
+  absl::Status read(const fs::path& path, const Matrix& scene_from_file, std::optional<size_t> material,
+                    size_t otherwise, const RenderArguments* arguments) {
+    absl::StatusOr<LoadedFile> file = read_mesh_file(path);
+    if (!file.ok()) return with_exit_code(file.status(), kExitFile);
+    units_->add(file->millimetres_per_unit);
+    for (const std::string& warning : file->warnings) {
+      plan_->notes.push_back(fmt::format("{}: {}", path.string(), warning));
+    }
+    const size_t first = plan_->materials.size();
+    if (!material) take_materials(*file, arguments);
+    for (MeshData& mesh : file->meshes) {
+      mesh.scene_from_mesh = multiply(scene_from_file, mesh.scene_from_mesh);
+      const size_t own = mesh.material ? first + *mesh.material : otherwise;
+      plan_->material_of_mesh.push_back(material.value_or(own));
+      plan_->meshes.push_back(std::move(mesh));
+    }
+    return absl::OkStatus();
+  }
+
+ private:
+  void take_materials(LoadedFile& file, const RenderArguments* arguments) {
+    const size_t first = plan_->textures.size();
+    const auto moved = [first](const std::optional<size_t>& texture) {
+      return texture ? std::optional(first + *texture) : std::nullopt;
+    };
+    for (FileMaterial& from : file.materials) {
+      PlannedMaterial& to = plan_->materials.emplace_back();
+      to = {std::move(from.material), moved(from.albedo), moved(from.normal), moved(from.roughness)};
+      to.material.textures.normal_scale = from.normal_scale;
+      if (arguments != nullptr) take_material_options(*arguments, &to.material);
+    }
+    std::move(file.textures.begin(), file.textures.end(), std::back_inserter(plan_->textures));
+  }
+
+  RenderPlan* plan_;
+  FileUnits* units_;
+};
+
 absl::Status take_arguments(const RenderArguments& arguments, RenderPlan* plan, FileUnits* units) {
-  plan->materials = {material_of(arguments)};
+  plan->materials.push_back({material_of(arguments)});
   if (!arguments.absorption_mm && !arguments.diffuse_color) plan->refractive_index = arguments.refractive_index;
   plan->lights = arguments.lights;
+  const bool chosen = arguments.preset || arguments.absorption_mm || arguments.diffuse_color;
+  MeshPlanner planner(plan, units);
   for (const std::string& mesh : arguments.meshes) {
-    if (absl::Status status = read_meshes(mesh, MeshData().scene_from_mesh, 0, plan, units); !status.ok())
-      return status;
+    absl::Status status =
+        planner.read(mesh, MeshData().scene_from_mesh, chosen ? std::optional<size_t>(0) : std::nullopt, 0, &arguments);
+    if (!status.ok()) return status;
   }
+  return absl::OkStatus();
+}
+
+absl::Status take_picture(const fs::path& path, bool srgb, RenderPlan* plan, std::optional<size_t>* index) {
+  if (path.empty()) return absl::OkStatus();
+  absl::StatusOr<TextureData> texture = read_texture_file(path, srgb);
+  if (!texture.ok()) return with_exit_code(texture.status(), kExitFile);
+  *index = plan->textures.size();
+  plan->textures.push_back(*std::move(texture));
   return absl::OkStatus();
 }
 
 absl::Status take_scene_file(SceneFile scene, RenderPlan* plan, FileUnits* units) {
   plan->display_name = scene.display_name;
   units->stated = scene.millimetres_per_unit;
-  for (SceneFile::NamedMaterial& named : scene.materials) plan->materials.push_back(std::move(named.material));
+  for (SceneFile::NamedMaterial& named : scene.materials) {
+    PlannedMaterial material{std::move(named.material)};
+    absl::Status status = take_picture(named.albedo_file, true, plan, &material.albedo);
+    if (status.ok()) status = take_picture(named.normal_file, false, plan, &material.normal);
+    if (status.ok()) status = take_picture(named.roughness_file, false, plan, &material.roughness);
+    if (!status.ok()) return status;
+    plan->materials.push_back(std::move(material));
+  }
   plan->lights = std::move(scene.lights);
   plan->options.settings = scene.settings;
   if (scene.size) plan->options.size = *scene.size;
-  std::optional<size_t> default_material;
+  const size_t default_material = plan->materials.size();
+  plan->materials.emplace_back();
+  MeshPlanner planner(plan, units);
   for (const SceneFile::MeshFile& mesh : scene.meshes) {
-    if (!mesh.material && !default_material) {
-      default_material = plan->materials.size();
-      plan->materials.emplace_back();
-    }
-    const size_t material = mesh.material ? *mesh.material : *default_material;
-    if (absl::Status status = read_meshes(mesh.path, mesh.scene_from_mesh, material, plan, units); !status.ok()) {
-      return status;
-    }
+    absl::Status status = planner.read(mesh.path, mesh.scene_from_mesh, mesh.material, default_material, nullptr);
+    if (!status.ok()) return status;
   }
   return absl::OkStatus();
 }

@@ -9,17 +9,25 @@
 #include "diaphane/environment.h"
 #include "diaphane/mesh_data.h"
 #include "diaphane/render_options.h"
+#include "diaphane/texture.h"
 #include "diaphane/values.h"
 #include "render_arguments.h"
 
 namespace diaphane::cli {
 
+/// A material whose pictures are still to be uploaded.
+struct PlannedMaterial {
+  Material material;
+  std::optional<size_t> albedo, normal, roughness;  ///< into RenderPlan::textures
+};
+
 struct RenderPlan {
   std::string display_name;
   std::vector<MeshData> meshes;
   std::vector<size_t> material_of_mesh;  ///< into `materials`, one per mesh
-  std::vector<Material> materials;
-  std::optional<float> refractive_index;  ///< in place of that of the only material, a preset
+  std::vector<PlannedMaterial> materials;
+  std::vector<TextureData> textures;
+  std::optional<float> refractive_index;  ///< in place of that of the first material, a preset
   std::vector<Light> lights;              ///< at least one, unless there is an environment
   std::optional<EnvironmentMap> environment;
   EnvironmentOptions environment_options;

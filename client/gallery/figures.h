@@ -27,6 +27,8 @@ absl::StatusOr<Section> figure_terms(const Studio& studio, const FigureOptions& 
 absl::StatusOr<Section> figure_morph(const Studio& studio, const FigureOptions& options);
 /// Fig. 11: porcelain in an environment, a morph; coats; every preset there.
 absl::StatusOr<Section> figure_environment(const Studio& studio, const FigureOptions& options);
+/// A body with an albedo, a normal map and a roughness map.
+absl::StatusOr<Section> figure_textures(const Studio& studio, const FigureOptions& options);
 /// Every preset on one mesh.
 absl::StatusOr<Section> figure_materials(const Studio& studio, const FigureOptions& options);
 /// Materials given by colour and mean free path, and the coefficients that they come to.

@@ -29,7 +29,7 @@ absl::Status run(const fs::path& folder, const fs::path& mesh, const std::string
   if (!studio.ok()) return studio.status();
   std::vector<Section> sections;
   for (const auto figure : {figure_kernels, figure_candle, figure_opaque, figure_terms, figure_morph,
-                            figure_environment, figure_materials, figure_colors, figure_techniques}) {
+                            figure_environment, figure_textures, figure_materials, figure_colors, figure_techniques}) {
     absl::StatusOr<Section> section = figure(*studio, options);
     if (!section.ok()) return section.status();
     if (isatty(STDERR_FILENO) != 0) std::cerr << section->title << "\n";

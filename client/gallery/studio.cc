@@ -3,8 +3,20 @@
 namespace diaphane::gallery {
 namespace {
 
+absl::Status hang(const Scene& scene, const std::optional<TextureData>& picture, std::optional<TextureHandle>* handle) {
+  if (!picture) return absl::OkStatus();
+  const absl::StatusOr<TextureHandle> added = scene.add_texture(*picture);
+  if (added.ok()) *handle = *added;
+  return added.status();
+}
+
 absl::StatusOr<MeshHandle> add_body(const Scene& scene, const Body& body) {
-  const absl::StatusOr<MaterialHandle> material = scene.add_material(body.material);
+  Material dressed = body.material;
+  absl::Status hung = hang(scene, body.pictures.albedo, &dressed.textures.albedo);
+  if (hung.ok()) hung = hang(scene, body.pictures.normal, &dressed.textures.normal);
+  if (hung.ok()) hung = hang(scene, body.pictures.roughness, &dressed.textures.roughness);
+  if (!hung.ok()) return hung;
+  const absl::StatusOr<MaterialHandle> material = scene.add_material(dressed);
   if (!material.ok()) return material.status();
   return scene.add_mesh(body.mesh, {.material = *material});
 }

@@ -11,13 +11,20 @@
 #include "diaphane/environment.h"
 #include "diaphane/mesh_data.h"
 #include "diaphane/private_server.h"
+#include "diaphane/texture.h"
 #include "gallery/linear_frame.h"
 
 namespace diaphane::gallery {
 
+/// On the surface of a body; none need be given.
+struct Pictures {
+  std::optional<TextureData> albedo, normal, roughness;
+};
+
 struct Body {
   MeshData mesh;
-  Material material;
+  Material material;  ///< without textures
+  Pictures pictures{};
 };
 
 /// What a picture is taken of.

@@ -147,7 +147,8 @@ SceneInfo from_proto(const v1::Scene& message) {
           .mesh_count = message.mesh_count(),
           .material_count = message.material_count(),
           .light_count = message.light_count(),
-          .has_environment = message.has_environment()};
+          .has_environment = message.has_environment(),
+          .texture_count = message.texture_count()};
 }
 
 MeshInfo from_proto(const v1::Mesh& message) {
@@ -157,7 +158,9 @@ MeshInfo from_proto(const v1::Mesh& message) {
                 .vertex_count = message.vertex_count(),
                 .triangle_count = message.triangle_count(),
                 .has_normals = message.has_normals(),
-                .positions_revision = message.positions_revision()};
+                .positions_revision = message.positions_revision(),
+                .has_texture_coordinates = message.has_texture_coordinates(),
+                .has_colors = message.has_colors()};
   if (message.scene_from_mesh_size() == static_cast<int>(mesh.scene_from_mesh.size())) {
     for (int i = 0; i < message.scene_from_mesh_size(); ++i) mesh.scene_from_mesh[i] = message.scene_from_mesh(i);
   }

@@ -62,6 +62,11 @@ v1::Material to_proto(const Material& material) {
   }
   message.set_profile(static_cast<v1::Profile>(material.profile));
   if (material.coat) message.mutable_coat()->set_roughness(material.coat->roughness);
+  const SurfaceTextures& textures = material.textures;
+  if (textures.albedo) message.mutable_textures()->set_albedo(textures.albedo->name);
+  if (textures.normal) message.mutable_textures()->set_normal(textures.normal->name);
+  if (textures.roughness) message.mutable_textures()->set_roughness(textures.roughness->name);
+  if (message.has_textures()) message.mutable_textures()->set_normal_scale(textures.normal_scale);
   return message;
 }
 
@@ -84,6 +89,11 @@ Material from_proto(const v1::Material& message) {
   }
   if (message.profile() != v1::PROFILE_UNSPECIFIED) material.profile = static_cast<Profile>(message.profile());
   if (message.has_coat()) material.coat = Coat{message.coat().roughness()};
+  const v1::SurfaceTextures& textures = message.textures();
+  if (!textures.albedo().empty()) material.textures.albedo = TextureHandle{textures.albedo()};
+  if (!textures.normal().empty()) material.textures.normal = TextureHandle{textures.normal()};
+  if (!textures.roughness().empty()) material.textures.roughness = TextureHandle{textures.roughness()};
+  if (textures.normal_scale() != 0) material.textures.normal_scale = textures.normal_scale();
   return material;
 }
 

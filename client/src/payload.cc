@@ -12,19 +12,9 @@ static_assert(std::endian::native == std::endian::little, "payloads are little-e
 static_assert(sizeof(Vec3) == 3 * sizeof(float) && sizeof(Rgb) == 3 * sizeof(float),
               "they travel as they lie in memory");
 
-void Payload::append(std::span<const Vec3> values) {
-  parts_.push_back(std::as_bytes(values));
-  total_bytes_ += values.size_bytes();
-}
-
-void Payload::append(std::span<const Rgb> values) {
-  parts_.push_back(std::as_bytes(values));
-  total_bytes_ += values.size_bytes();
-}
-
-void Payload::append(std::span<const uint32_t> values) {
-  parts_.push_back(std::as_bytes(values));
-  total_bytes_ += values.size_bytes();
+void Payload::append_bytes(std::span<const std::byte> bytes) {
+  parts_.push_back(bytes);
+  total_bytes_ += bytes.size();
 }
 
 std::string Payload::sha256() const {

@@ -52,7 +52,7 @@ absl::StatusOr<uint64_t> Scene::update_material(const MaterialHandle& handle, co
   v1::UpdateMaterialRequest request;
   *request.mutable_material() = to_proto(material);
   request.mutable_material()->set_name(handle.name);
-  for (const char* path : {"model", "profile", "coat"}) request.mutable_update_mask()->add_paths(path);
+  for (const char* path : {"model", "profile", "coat", "textures"}) request.mutable_update_mask()->add_paths(path);
   request.set_request_id(new_request_id());
   return revision_of(connection_->call(connection_->scene_service(), &SceneStub::UpdateMaterial, request));
 }
@@ -62,6 +62,17 @@ absl::StatusOr<uint64_t> Scene::remove_material(const MaterialHandle& handle) co
   request.set_name(handle.name);
   request.set_request_id(new_request_id());
   return revision_of(connection_->call(connection_->scene_service(), &SceneStub::DeleteMaterial, request));
+}
+
+absl::StatusOr<TextureHandle> Scene::add_texture(const TextureData& texture) const {
+  return internal::upload_texture(*connection_, name_, texture);
+}
+
+absl::StatusOr<uint64_t> Scene::remove_texture(const TextureHandle& handle) const {
+  v1::DeleteTextureRequest request;
+  request.set_name(handle.name);
+  request.set_request_id(new_request_id());
+  return revision_of(connection_->call(connection_->scene_service(), &SceneStub::DeleteTexture, request));
 }
 
 absl::StatusOr<LightHandle> Scene::add_light(const Light& light) const {

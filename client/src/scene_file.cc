@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <system_error>
+#include <tuple>
 
 #include "convert.h"
 #include "fmt/format.h"
@@ -80,6 +81,28 @@ bool leaves_folder(const fs::path& folder, const fs::path& file) {
   return code || std::mismatch(root.begin(), root.end(), target.begin(), target.end()).first != root.end();
 }
 
+absl::Status check_path(const fs::path& path, const fs::path& folder, std::string_view field, const std::string& file) {
+  if (file.find('\0') == std::string::npos && !leaves_folder(folder, file)) return absl::OkStatus();
+  return invalid(path, fmt::format("{}: must be a relative path that stays in this folder, got '{}'", field, file));
+}
+
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+
+absl::Status take_textures(const fs::path& path, int i, const v1::SurfaceTextures& textures,
+                           SceneFile::NamedMaterial* material) {
+  const fs::path folder = folder_of(path);
+  for (const auto& [name, file, to] : {std::tuple("albedo", &textures.albedo(), &material->albedo_file),
+                                       std::tuple("normal", &textures.normal(), &material->normal_file),
+                                       std::tuple("roughness", &textures.roughness(), &material->roughness_file)}) {
+    if (file->empty()) continue;
+    absl::Status stays = check_path(path, folder, fmt::format("materials[{}].textures.{}", i, name), *file);
+    if (!stays.ok()) return stays;
+    *to = folder / *file;
+  }
+  material->material.textures = {.normal_scale = material->material.textures.normal_scale};
+  return absl::OkStatus();
+}
+
 absl::Status convert_materials(const fs::path& path, const SceneFileForm& form, SceneFile* scene) {
   for (int i = 0; i < form.materials_size(); ++i) {
     const v1::Material& material = form.materials(i);
@@ -91,8 +114,10 @@ absl::Status convert_materials(const fs::path& path, const SceneFileForm& form, 
     if (material.model_case() == v1::Material::MODEL_NOT_SET) {
       return invalid(path, fmt::format("materials[{}]: must have preset, coefficients, diffuse_color or volume", i));
     }
-    if (material.has_textures()) return invalid(path, fmt::format("materials[{}].textures: is not drawn yet", i));
-    scene->materials.push_back({material.name(), internal::from_proto(material)});
+    SceneFile::NamedMaterial named{material.name(), internal::from_proto(material), {}, {}, {}};
+    absl::Status taken = take_textures(path, i, material.textures(), &named);
+    if (!taken.ok()) return taken;
+    scene->materials.push_back(std::move(named));
   }
   return absl::OkStatus();
 }
@@ -109,15 +134,13 @@ absl::Status convert_lights(const fs::path& path, const SceneFileForm& form, Sce
 
 absl::Status convert_meshes(const fs::path& path, const SceneFileForm& form, SceneFile* scene) {
   if (form.meshes_size() == 0) return invalid(path, "meshes: must have at least one");
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const fs::path folder = folder_of(path);
   for (int i = 0; i < form.meshes_size(); ++i) {
     const internal::MeshFileForm& mesh = form.meshes(i);
     SceneFile::MeshFile file{.path = folder / mesh.file()};
     if (mesh.file().empty()) return invalid(path, fmt::format("meshes[{}].file: must be given", i));
-    if (mesh.file().find('\0') != std::string::npos || leaves_folder(folder, mesh.file())) {
-      return invalid(path, fmt::format("meshes[{}].file: must be a relative path that stays in this folder, got '{}'",
-                                       i, mesh.file()));
-    }
+    absl::Status stays = check_path(path, folder, fmt::format("meshes[{}].file", i), mesh.file());
+    if (!stays.ok()) return stays;
     if (!mesh.material().empty()) {
       const auto found = std::find_if(scene->materials.begin(), scene->materials.end(),
                                       [&](const auto& material) { return material.name == mesh.material(); });

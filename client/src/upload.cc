@@ -22,6 +22,16 @@ absl::Status check_counts(std::span<const Vec3> positions, std::span<const Vec3>
   return absl::OkStatus();
 }
 
+absl::Status check_attributes(const MeshData& mesh) {
+  for (const auto& [field, count] :
+       {std::pair("texture_coordinates", mesh.texture_coordinates.size()), std::pair("colors", mesh.colors.size())}) {
+    if (count == 0 || count == mesh.positions.size()) continue;
+    return absl::InvalidArgumentError(
+        fmt::format("{}: must be none or one per position ({}), got {}", field, mesh.positions.size(), count));
+  }
+  return absl::OkStatus();
+}
+
 template <typename Request, typename Response>
 absl::StatusOr<Response> stream(const Connection& connection,
                                 std::unique_ptr<grpc::ClientWriter<Request>> (SceneStub::*method)(grpc::ClientContext*,
@@ -53,9 +63,12 @@ absl::StatusOr<MeshHandle> upload_mesh(const Connection& connection, const std::
         fmt::format("triangles: must be three indices per triangle, at most 2^32 - 1 triangles, got {} indices",
                     mesh.triangles.size()));
   }
+  if (absl::Status status = check_attributes(mesh); !status.ok()) return status;
   Payload payload;
   payload.append(mesh.positions);
   payload.append(mesh.normals);
+  payload.append(std::span<const TextureCoordinate>(mesh.texture_coordinates));
+  payload.append(std::span<const Rgb>(mesh.colors));
   payload.append(mesh.triangles);
 
   v1::UploadMeshRequest request;
@@ -66,6 +79,8 @@ absl::StatusOr<MeshHandle> upload_mesh(const Connection& connection, const std::
   header.set_vertex_count(static_cast<uint32_t>(mesh.positions.size()));
   header.set_triangle_count(static_cast<uint32_t>(mesh.triangles.size() / 3));
   header.set_has_normals(!mesh.normals.empty());
+  header.set_has_texture_coordinates(!mesh.texture_coordinates.empty());
+  header.set_has_colors(!mesh.colors.empty());
   header.set_total_bytes(payload.total_bytes());
   header.set_sha256(payload.sha256());
   header.set_request_id(new_request_id());
@@ -97,6 +112,32 @@ absl::StatusOr<uint64_t> upload_environment(const Connection& connection, const 
   const auto response = stream(connection, &SceneStub::UploadEnvironment, request, payload);
   if (!response.ok()) return response.status();
   return response->scene_revision();
+}
+
+absl::StatusOr<TextureHandle> upload_texture(const Connection& connection, const std::string& scene,
+                                             const TextureData& texture) {
+  if (texture.rgba.size() != uint64_t{4} * texture.width_px * texture.height_px) {
+    return absl::InvalidArgumentError(fmt::format("rgba: must be 4·width_px·height_px = {} bytes, got {}",
+                                                  uint64_t{4} * texture.width_px * texture.height_px,
+                                                  texture.rgba.size()));
+  }
+  Payload payload;
+  payload.append(std::span<const uint8_t>(texture.rgba));
+
+  v1::UploadTextureRequest request;
+  v1::TextureHeader& header = *request.mutable_header();
+  header.set_parent(scene);
+  header.mutable_texture()->set_width_px(texture.width_px);
+  header.mutable_texture()->set_height_px(texture.height_px);
+  header.mutable_texture()->set_srgb(texture.srgb);
+  header.mutable_texture()->set_clamp_u(texture.clamp_u);
+  header.mutable_texture()->set_clamp_v(texture.clamp_v);
+  header.set_total_bytes(payload.total_bytes());
+  header.set_sha256(payload.sha256());
+  header.set_request_id(new_request_id());
+  const auto response = stream(connection, &SceneStub::UploadTexture, request, payload);
+  if (!response.ok()) return response.status();
+  return TextureHandle{response->texture().name()};
 }
 
 absl::StatusOr<uint64_t> upload_positions(const Connection& connection, const MeshHandle& handle,

@@ -16,6 +16,10 @@ namespace diaphane::internal {
 absl::StatusOr<MeshHandle> upload_mesh(const Connection& connection, const std::string& scene, const MeshData& mesh,
                                        const MeshOptions& options);
 
+/// Scene::add_texture.
+absl::StatusOr<TextureHandle> upload_texture(const Connection& connection, const std::string& scene,
+                                             const TextureData& texture);
+
 /// Scene::update_positions.
 absl::StatusOr<uint64_t> upload_positions(const Connection& connection, const MeshHandle& handle,
                                           std::span<const Vec3> positions, std::span<const Vec3> normals);

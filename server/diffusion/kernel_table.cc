@@ -95,6 +95,10 @@ double effective_range(const optics::ReflectanceProfile& profile, double diamete
   return std::min(range, diameter);
 }
 
+/// What the Gaussians miss of Rd counts as so wide, in z: a vertex further from its neighbours would see of it only its
+/// value at r = 0, times an area that grows without bound.
+constexpr double kMissedDeviation = 1.5;
+
 /// How much of a Gaussian of deviation σ the vertices at this spacing can carry.
 double carried_share(double deviation, double spacing) {
   const double t = std::clamp((deviation / spacing - 0.48) / 0.24, 0.0, 1.0);
@@ -243,9 +247,18 @@ void KernelSet::build(uint32_t step) {
       left_out[k] = gaussians.weight[k] * (1 - carried_share(gaussians.deviation_mm[k], spacing));
       response += left_out[k] * 2 * pi * variance;
     }
+    const double missed_left_out =
+        is_singular(profile_[c]) ? 0 : 1 - carried_share(kMissedDeviation * profile_[c].smooth_mm, spacing);
+    response += missed_left_out * (profile_[c].total - gaussians.total());
     local_response_[step][c] += static_cast<float>(response);
     const auto near = [&](double distance2) {
       KernelValue k = carried_kernel(profile_[c], gaussians_[c], distance2);
+      if (missed_left_out > 0) {
+        const KernelValue fit = gaussians_[c].at(distance2);
+        k.value -= missed_left_out * (k.value - fit.value);
+        k.first -= missed_left_out * (k.first - fit.first);
+        k.second -= missed_left_out * (k.second - fit.second);
+      }
       for (size_t i = 0; i < left_out.size(); ++i) {
         if (left_out[i] == 0) continue;
         const double gaussian = left_out[i] * std::exp(-rate[i] * distance2);

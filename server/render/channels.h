@@ -29,6 +29,8 @@ struct ChannelTile {
   std::vector<glm::vec4> normal;       ///< xyz
   std::vector<glm::vec4> irradiance;   ///< rgb
   std::vector<glm::vec4> radiosity;    ///< rgb
+  std::vector<glm::vec4> albedo;       ///< rgb; of textured frames
+  std::vector<glm::vec4> coat;         ///< its normal, and the share of its alpha; of textured frames
 };
 
 /// Writes the request's channels of a tile to their place in `image`, which is the request's size and has all of

@@ -14,10 +14,10 @@ namespace diaphane::render {
 namespace {
 
 constexpr size_t kAngles = 64;
-constexpr float kMirror = 0.002f;   // GGX α up to which one draw is enough
-constexpr float kWidening = 4;      // of the solid angle of one of many draws: else their pattern shows
-constexpr size_t kMostTables = 64;  // kept between frames
-constexpr float kGrazing = 1e-3f;   // least cosine to the eye: silhouettes' normals look away from it
+constexpr float kMirror = 0.002f;    // GGX α up to which one draw is enough
+constexpr float kWidening = 4;       // of the solid angle of one of many draws: else their pattern shows
+constexpr size_t kMostTables = 256;  // kept between frames
+constexpr float kGrazing = 1e-3f;    // least cosine to the eye: silhouettes' normals look away from it
 
 /// Axes with z along the normal.
 class Frame3 {
@@ -84,6 +84,16 @@ struct CoatPoint {
   }
 };
 
+uint32_t roughness_step(const ChannelTile& tile, size_t pixel) {
+  if (tile.coat.empty()) return kRoughnessSteps;
+  return static_cast<uint32_t>(std::lround(std::clamp(tile.coat[pixel].w, 0.0f, 1.0f) * float{kRoughnessSteps}));
+}
+
+/// The coat's own where the tile is textured.
+glm::vec3 coat_normal(const ChannelTile& tile, size_t pixel) {
+  return tile.coat.empty() ? glm::vec3(tile.normal[pixel]) : glm::normalize(glm::vec3(tile.coat[pixel]));
+}
+
 }  // namespace
 
 CoatTable::CoatTable(const optics::Coat& coat, float refractive_index) : coat_(coat, refractive_index) {
@@ -117,8 +127,24 @@ const CoatTable& CoatLayer::table_of(const optics::Coat& coat, float refractive_
   const std::pair<float, float> key(coat.roughness, refractive_index);
   const auto found = tables_.find(key);
   if (found != tables_.end()) return found->second;
-  if (tables_.size() >= kMostTables) tables_.clear();
   return tables_.emplace(key, CoatTable(coat, refractive_index)).first->second;
+}
+
+CoatLayer::TableSteps CoatLayer::tables_of(const optics::Coat& coat, float refractive_index, float mesh_id,
+                                           const ChannelTile& tile) {
+  if (tables_.size() + kRoughnessSteps + 1 > kMostTables) tables_.clear();
+  TableSteps tables{};
+  if (tile.coat.empty()) {
+    tables[kRoughnessSteps] = &table_of(coat, refractive_index);
+    return tables;
+  }
+  for (size_t p = 0; p < tile.coat.size(); ++p) {
+    const CoatTable*& table = tables[roughness_step(tile, p)];
+    if (table != nullptr || tile.position_mm[p].w != mesh_id) continue;
+    const float share = static_cast<float>(roughness_step(tile, p)) / float{kRoughnessSteps};
+    table = &table_of({.roughness = coat.roughness * share}, refractive_index);
+  }
+  return tables;
 }
 
 const MapPyramid* CoatLayer::pyramid(const CoatLight& light) {
@@ -136,7 +162,7 @@ void CoatLayer::forget_orphans() {
 
 void CoatLayer::add(const optics::Coat& coat, float refractive_index, float mesh_id, const CoatLight& light,
                     const glm::vec3& eye_mm, const ChannelTile& tile, std::span<glm::vec4> radiance) {
-  const CoatTable& table = table_of(coat, refractive_index);
+  const TableSteps tables = tables_of(coat, refractive_index, mesh_id, tile);
   const MapPyramid* coarser = pyramid(light);
   const float turn_deg = light.environment == nullptr ? 0 : -light.environment->rotation_deg;
   const glm::mat3 map_from_world(rotated_about_y({1, 0, 0}, turn_deg), glm::vec3(0, 1, 0),
@@ -144,13 +170,13 @@ void CoatLayer::add(const optics::Coat& coat, float refractive_index, float mesh
   tbb::parallel_for(tbb::blocked_range<size_t>(0, radiance.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
     for (size_t p = range.begin(); p != range.end(); ++p) {
       if (tile.position_mm[p].w != mesh_id) continue;
-      const glm::vec3 position_mm(tile.position_mm[p]), normal(tile.normal[p]);
+      const glm::vec3 position_mm(tile.position_mm[p]), normal = coat_normal(tile, p);
       // A vertex without area has no direction.
       if (!(glm::dot(normal, normal) > 0)) continue;
       const Frame3 frame(normal);
       glm::vec3 to_eye = frame.to_local(glm::normalize(eye_mm - position_mm));
       to_eye.z = std::max(to_eye.z, kGrazing);
-      const CoatPoint point{table,
+      const CoatPoint point{*tables[roughness_step(tile, p)],
                             light,
                             coarser,
                             position_mm,

@@ -1,6 +1,7 @@
 // The light that coats reflect, on top of what leaves the bodies.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -49,12 +50,16 @@ class CoatTable {
   std::vector<Look> looks_;  ///< [angle][draw], evenly in the root of the cosine
 };
 
+/// Of a roughness map.
+inline constexpr uint32_t kRoughnessSteps = 32;
+
 /// Keeps tables and the pyramid of a map from frame to frame. Render thread only.
 class CoatLayer {
  public:
   /// Adds what the coat of one mesh sends to `eye_mm` to those of `radiance` (one a pixel of `tile`, linear, alpha 1)
-  /// that show it: `mesh_id` in the tile's positions. Point lights and lamps make one highlight each; the environment
-  /// is looked up in 16 directions, in one by a mirror, and nothing stands before it. Spread over all cores.
+  /// that show it: `mesh_id` in the tile's positions. Where the tile is textured its coat gives normals and, in steps
+  /// of 1/32, the share of the roughness. Point lights and lamps make one highlight each; the environment is looked up
+  /// in 16 directions, in one by a mirror, and nothing stands before it. Spread over all cores.
   void add(const optics::Coat& coat, float refractive_index, float mesh_id, const CoatLight& light,
            const glm::vec3& eye_mm, const ChannelTile& tile, std::span<glm::vec4> radiance);
 
@@ -62,7 +67,11 @@ class CoatLayer {
   void forget_orphans();
 
  private:
+  /// Of every roughness that the pixels of a mesh have, by step; null where none has it.
+  using TableSteps = std::array<const CoatTable*, kRoughnessSteps + 1>;
+
   const CoatTable& table_of(const optics::Coat& coat, float refractive_index);
+  TableSteps tables_of(const optics::Coat& coat, float refractive_index, float mesh_id, const ChannelTile& tile);
   const MapPyramid* pyramid(const CoatLight& light);
 
   std::map<std::pair<float, float>, CoatTable> tables_;

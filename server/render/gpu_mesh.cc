@@ -5,9 +5,10 @@
 namespace diaphane::render {
 namespace {
 
-void fill_attribute(const gl::Buffer& buffer, GLuint location, std::span<const glm::vec3> values) {
+template <typename Vector>
+void fill_attribute(const gl::Buffer& buffer, GLuint location, std::span<const Vector> values) {
   gl::upload(buffer, GL_ARRAY_BUFFER, values.data(), values.size_bytes(), GL_STREAM_DRAW);
-  glVertexAttribPointer(location, 3, GL_FLOAT, GL_FALSE, sizeof(glm::vec3), nullptr);
+  glVertexAttribPointer(location, Vector::length(), GL_FLOAT, GL_FALSE, sizeof(Vector), nullptr);
   glEnableVertexAttribArray(location);
 }
 
@@ -22,13 +23,16 @@ void GpuMesh::update(const std::shared_ptr<const geometry::MeshTopology>& topolo
   }
   clock.run("upload", [&] {
     glBindVertexArray(vertex_array_.id());
-    fill_attribute(positions_, ATTRIBUTE_POSITION, shape.positions_mm);
-    fill_attribute(normals_, ATTRIBUTE_NORMAL, shape.normals);
+    fill_attribute<glm::vec3>(positions_, ATTRIBUTE_POSITION, shape.positions_mm);
+    fill_attribute<glm::vec3>(normals_, ATTRIBUTE_NORMAL, shape.normals);
     if (new_topology) {
       glDisableVertexAttribArray(ATTRIBUTE_RADIOSITY);
       radiosity_memo_.forget();
       glDisableVertexAttribArray(ATTRIBUTE_IRRADIANCE);
       irradiance_memo_.forget();
+      glDisableVertexAttribArray(ATTRIBUTE_TEXTURE_COORDINATE);
+      glDisableVertexAttribArray(ATTRIBUTE_COLOR);
+      attributes_.reset();
       index_count_ = static_cast<GLsizei>(3 * topology->triangles.size());
       gl::upload(indices_, GL_ELEMENT_ARRAY_BUFFER, topology->triangles.data(),
                  topology->triangles.size() * sizeof(glm::uvec3), GL_STATIC_DRAW);
@@ -59,6 +63,14 @@ void GpuMesh::update_irradiance(std::span<const glm::vec3> irradiance, const voi
     glBindVertexArray(vertex_array_.id());
     fill_attribute(irradiance_, ATTRIBUTE_IRRADIANCE, irradiance);
   });
+}
+
+void GpuMesh::fill_attributes(const geometry::SurfaceAttributes& attributes) {
+  glBindVertexArray(vertex_array_.id());
+  if (!attributes.texture_coordinates.empty()) {
+    fill_attribute<glm::vec2>(texture_coordinates_, ATTRIBUTE_TEXTURE_COORDINATE, attributes.texture_coordinates);
+  }
+  if (!attributes.colors.empty()) fill_attribute<glm::vec3>(colors_, ATTRIBUTE_COLOR, attributes.colors);
 }
 
 void GpuMesh::draw(bool facing_only, bool mirrored) const {

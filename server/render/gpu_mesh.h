@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/shape.h"
+#include "geometry/surface_attributes.h"
 #include "geometry/topology.h"
 #include "gl/objects.h"
 #include "render/memo.h"
@@ -28,10 +29,22 @@ class GpuMesh {
   void update_irradiance(std::span<const glm::vec3> irradiance, const void* source, uint64_t generation,
                          StageClock& clock);
 
+  /// Texture coordinates at ATTRIBUTE_TEXTURE_COORDINATE and colours at ATTRIBUTE_COLOR, as far as there are any;
+  /// `carry` makes those of the last update()'s vertices of the mesh's own. Stage: upload.
+  template <typename Carry>
+  void update_attributes(const std::shared_ptr<const geometry::SurfaceAttributes>& attributes, const Carry& carry,
+                         StageClock& clock) {
+    if (attributes_.lock() == attributes) return clock.sleep("upload");
+    clock.run("upload", [&] { fill_attributes(carry(*attributes)); });
+    attributes_ = attributes;
+  }
+
   /// Draws all triangles, or those alone that face the eye; `mirrored`: the projection turns left into right.
   void draw(bool facing_only = false, bool mirrored = false) const;
 
  private:
+  void fill_attributes(const geometry::SurfaceAttributes& attributes);
+
   std::weak_ptr<const geometry::MeshTopology> topology_;
   Memo<std::pair<const geometry::PlacedShape*, uint64_t>> shape_memo_;
   Memo<uint64_t> radiosity_memo_;
@@ -41,6 +54,9 @@ class GpuMesh {
   gl::Buffer normals_;
   gl::Buffer radiosity_;
   gl::Buffer irradiance_;
+  std::weak_ptr<const geometry::SurfaceAttributes> attributes_;
+  gl::Buffer texture_coordinates_;
+  gl::Buffer colors_;
   gl::Buffer indices_;
   GLsizei index_count_ = 0;
   bool flipped_ = false;

@@ -29,6 +29,7 @@ struct DrawnMesh {
   MeshState* state;
   optics::Coefficients material;
   std::optional<optics::Coat> coat;
+  scene::SurfaceTextures textures;
 };
 
 }  // namespace diaphane::render

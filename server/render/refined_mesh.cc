@@ -77,6 +77,22 @@ void RefinedMesh::carry_over(const geometry::PlacedShape& placed) {
   if (normals_given_) complete_normals();
 }
 
+template <typename T>
+std::vector<T> RefinedMesh::carry(const std::vector<T>& values) const {
+  if (values.empty()) return {};
+  const std::vector<uint32_t>& source = ordered_.source_of_vertex;
+  std::vector<T> carried(source.size());
+  for (size_t v = 0; v < source.size(); ++v) {
+    if (source[v] < original_count_) carried[v] = values[source[v]];
+  }
+  for_each_midpoint([&](const Midpoint& m) { carried[m.vertex] = 0.5f * (carried[m.a] + carried[m.b]); });
+  return carried;
+}
+
+geometry::SurfaceAttributes RefinedMesh::carry(const geometry::SurfaceAttributes& attributes) const {
+  return {carry(attributes.texture_coordinates), carry(attributes.colors)};
+}
+
 void RefinedMesh::complete_normals() {
   if (!normals_given_ && shape_.flipped) {
     for (glm::vec3& n : shape_.normals) n = -n;

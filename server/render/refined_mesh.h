@@ -10,6 +10,7 @@
 #include "diffusion/dipole_integral.h"
 #include "diffusion/surface_topology.h"
 #include "geometry/subdivide.h"
+#include "geometry/surface_attributes.h"
 #include "optics/dipole.h"
 #include "render/memo.h"
 #include "render/placed_mesh.h"
@@ -34,6 +35,8 @@ class RefinedMesh {
     fill(normals_given_ ? std::span<glm::vec3>() : std::span<glm::vec3>(shape_.normals));
     if (!normals_given_) complete_normals();
   }
+  /// Those of the mesh, for the vertices of topology(): interpolated along split edges.
+  geometry::SurfaceAttributes carry(const geometry::SurfaceAttributes& attributes) const;
   /// Another number whenever topology or shape change; no two meshes ever share one.
   uint64_t generation() const { return generation_; }
 
@@ -44,6 +47,8 @@ class RefinedMesh {
   };
   template <typename Work>
   void for_each_midpoint(const Work& work) const;
+  template <typename T>
+  std::vector<T> carry(const std::vector<T>& values) const;
   void lay_out(geometry::SubdividedMesh refined, uint32_t original_count);
   void carry_over(const geometry::PlacedShape& placed);
   void complete_normals();

@@ -15,20 +15,34 @@ bool contains(const geometry::Bounds& bounds, const glm::vec3& point) {
   return glm::clamp(point, bounds.lowest, bounds.highest) == point;
 }
 
+bool is_textured(const std::vector<DrawnMesh>& meshes) {
+  return std::any_of(meshes.begin(), meshes.end(), [](const DrawnMesh& drawn) {
+    const geometry::SurfaceAttributes* attributes = drawn.mesh->attributes.get();
+    if (attributes == nullptr) return false;
+    return !attributes->colors.empty() || (!attributes->texture_coordinates.empty() && drawn.textures.any());
+  });
+}
+
 }  // namespace
 
 absl::Status ScenePainter::check_cancelled(const Job& job) {
   return job.cancelled.load() ? absl::CancelledError("the frame was cancelled while it was drawn") : absl::OkStatus();
 }
 
-void ScenePainter::bind_view(const Job& job, size_t mesh_index) const {
+void ScenePainter::bind_view(const Job& job, size_t mesh_index) {
   ViewUniforms of_mesh = job.view;
   of_mesh.mesh_id = static_cast<float>(mesh_index + 1);
   shading_.bind(of_mesh);
-  shading_.bind(material_uniforms(job.meshes[mesh_index].material));
+  const DrawnMesh& drawn = job.meshes[mesh_index];
+  shading_.bind(material_uniforms(drawn.material, drawn.textures.normal.empty() ? 0 : drawn.textures.normal_scale));
+  if (!job.variant.textured) return;
+  textures_.bind(drawn.textures);
+  // Of meshes without colours or texture coordinates.
+  glVertexAttrib3f(ATTRIBUTE_COLOR, 1, 1, 1);
+  glVertexAttrib2f(ATTRIBUTE_TEXTURE_COORDINATE, 0, 0);
 }
 
-void ScenePainter::draw_meshes(const Job& job) const {
+void ScenePainter::draw_meshes(const Job& job) {
   for (size_t i = 0; i < job.meshes.size(); ++i) {
     bind_view(job, i);
     const MeshState& state = *job.meshes[i].state;
@@ -81,6 +95,21 @@ void ScenePainter::shade_tile(Job& job, const Tile& tile) {
   });
 }
 
+/// The G-buffer, as far as it was drawn.
+void ScenePainter::read_surface(Job& job, const Tile& tile) {
+  const size_t count = size_t{tile.width_px} * tile.height_px;
+  ChannelTile& channels = job.channels;
+  channels.position_mm.resize(count);
+  channels.normal.resize(count);
+  channels.albedo.resize(job.variant.textured ? count : 0);
+  channels.coat.resize(job.variant.textured ? count : 0);
+  job.clock.run("read_back", [&] {
+    targets_->read_gbuffer(tile.width_px, tile.height_px, channels.position_mm.data(), channels.normal.data());
+    if (!job.variant.textured) return;
+    targets_->read_textured(tile.width_px, tile.height_px, channels.albedo.data(), channels.coat.data());
+  });
+}
+
 void ScenePainter::read_tile(Job& job, const Tile& tile, uint8_t* pixels) {
   const uint32_t width = tile.width_px;
   const uint32_t height = tile.height_px;
@@ -96,10 +125,7 @@ void ScenePainter::read_tile(Job& job, const Tile& tile, uint8_t* pixels) {
   }
   if (!job.needs.surface && !job.coated) return;
   if (job.request.settings.technique == Technique::kIntegral) draw_gbuffer(job, tile);
-  channels.position_mm.resize(count);
-  channels.normal.resize(count);
-  job.clock.run("read_back",
-                [&] { targets_->read_gbuffer(width, height, channels.position_mm.data(), channels.normal.data()); });
+  read_surface(job, tile);
 }
 
 absl::Status ScenePainter::draw_tile(Job& job, const Tile& tile, uint8_t* pixels) {
@@ -138,6 +164,7 @@ absl::StatusOr<Frame> ScenePainter::paint(const FrameRequest& request, const std
                     (technique == Technique::kPaper || technique == Technique::kLambert);
   job.variant.channels = job.needs.light;
   gather_meshes(job);
+  job.variant.textured = is_textured(job.meshes);
   if (absl::Status updated = update(job); !updated.ok()) return updated;
 
   const float aspect = static_cast<float>(request.width_px) / static_cast<float>(request.height_px);

@@ -11,6 +11,7 @@
 #include "render/channels.h"
 #include "render/coat_layer.h"
 #include "render/frame.h"
+#include "render/gpu_textures.h"
 #include "render/mesh_state.h"
 #include "render/shading.h"
 #include "render/shadow.h"
@@ -51,6 +52,7 @@ class ScenePainter {
 
   // scene_painter_stages.cc
   void gather_meshes(Job& job);
+  void update_surface(const DrawnMesh& drawn, const RefinedMesh* refined, Job& job);
   void bound_memory(const Job& job);
   absl::Status refine(Job& job);
   void update_shadows(Job& job);
@@ -61,12 +63,13 @@ class ScenePainter {
   absl::Status update(Job& job);
 
   // scene_painter.cc
-  void bind_view(const Job& job, size_t mesh_index) const;
-  void draw_meshes(const Job& job) const;
+  void bind_view(const Job& job, size_t mesh_index);
+  void draw_meshes(const Job& job);
   void set_viewport(const Job& job, const Tile& tile) const;
   void draw_gbuffer(Job& job, const Tile& tile);
   void draw_forward(Job& job, const Tile& tile);
   void shade_tile(Job& job, const Tile& tile);
+  void read_surface(Job& job, const Tile& tile);
   void read_tile(Job& job, const Tile& tile, uint8_t* pixels);
   absl::Status draw_tile(Job& job, const Tile& tile, uint8_t* pixels);
 
@@ -84,6 +87,7 @@ class ScenePainter {
 
   Shading shading_;
   CoatLayer coats_;
+  GpuTextures textures_;
   std::map<std::string, MeshState> meshes_;
   std::optional<ViewTargets> targets_;
   ShadowScene shadows_;

@@ -33,15 +33,11 @@ absl::Status ScenePainter::draw_reference_tile(Job& job, const Tile& tile, uint8
   draw_gbuffer(job, tile);
   const size_t count = size_t{tile.width_px} * tile.height_px;
   ChannelTile& channels = job.channels;
-  channels.position_mm.resize(count);
-  channels.normal.resize(count);
   if (job.needs.light) {
     channels.irradiance.assign(count, glm::vec4(0));
     channels.radiosity.assign(count, glm::vec4(0));
   }
-  job.clock.run("read_back", [&] {
-    targets_->read_gbuffer(tile.width_px, tile.height_px, channels.position_mm.data(), channels.normal.data());
-  });
+  read_surface(job, tile);
   const bool shadowed = casts_shadows(job.request.settings);
   if (shadowed) shadows_.prepare_rays();
   const auto shown = static_cast<size_t>(std::count_if(channels.position_mm.begin(), channels.position_mm.end(),
@@ -73,7 +69,7 @@ absl::Status ScenePainter::draw_reference_tile(Job& job, const Tile& tile, uint8
     if (job.needs.irradiance) entering = brute_force_irradiance(body, points.positions_mm, points.normals);
     for (size_t k = 0; k < points.pixels.size(); ++k) {
       const size_t pixel = points.pixels[k];
-      const glm::vec3& b = (*leaving)[k];
+      const glm::vec3 b = channels.albedo.empty() ? (*leaving)[k] : (*leaving)[k] * glm::vec3(channels.albedo[pixel]);
       if (job.needs.light) channels.radiosity[pixel] = glm::vec4(b, 1);
       if (job.needs.irradiance) channels.irradiance[pixel] = glm::vec4(entering[k], 1);
       radiance[pixel] = glm::vec4(

@@ -19,18 +19,25 @@ bool beyond(const geometry::Bounds& bounds_mm, float limit_mm) {
   return !(std::max({farthest.x, farthest.y, farthest.z}) <= limit_mm);
 }
 
+/// Without texture coordinates there is nothing to look up.
+scene::SurfaceTextures surface_textures(const scene::Material* material, const scene::Mesh& mesh) {
+  if (material == nullptr || mesh.attributes == nullptr || mesh.attributes->texture_coordinates.empty()) return {};
+  return material->textures;
+}
+
 }  // namespace
 
 void ScenePainter::gather_meshes(Job& job) {
   std::erase_if(meshes_, [](const auto& entry) { return entry.second.placed.orphaned(); });
   coats_.forget_orphans();
+  textures_.forget_orphans();
   const scene::SceneSnapshot& scene = *job.request.scene;
   for (const auto& mesh : scene.meshes) {
     MeshState& state = meshes_[mesh->name];
     state.placed.update(*mesh, scene.millimetres_per_unit, job.clock);
     const scene::Material* material = scene::material_of(scene, *mesh);
     job.meshes.push_back({mesh.get(), &state, material == nullptr ? optics::Coefficients{} : material->coefficients,
-                          material == nullptr ? std::nullopt : material->coat});
+                          material == nullptr ? std::nullopt : material->coat, surface_textures(material, *mesh)});
   }
   job.bounds_mm = job.meshes.front().state->placed.bounds_mm();
   for (const DrawnMesh& drawn : job.meshes) {
@@ -84,6 +91,18 @@ void ScenePainter::bound_memory(const Job& job) {
   });
 }
 
+/// `refined`: what the last GpuMesh::update() was of; null: the mesh itself.
+void ScenePainter::update_surface(const DrawnMesh& drawn, const RefinedMesh* refined, Job& job) {
+  if (!job.variant.textured) return;
+  textures_.update(*job.request.scene, drawn.textures, job.clock);
+  drawn.state->gpu.update_attributes(
+      drawn.mesh->attributes,
+      [&](const geometry::SurfaceAttributes& attributes) {
+        return refined == nullptr ? attributes : refined->carry(attributes);
+      },
+      job.clock);
+}
+
 void ScenePainter::update_atlas(const DrawnMesh& drawn, Job& job) {
   const uint32_t face_size_px = job.request.settings.paper.face_size_px;
   AtlasKey key{drawn.state->placed.generation(), job.lights, drawn.material.refractive_index, face_size_px,
@@ -113,6 +132,7 @@ void ScenePainter::update_integral(const DrawnMesh& drawn, bool shadowed, Job& j
        shadowed ? shadows_generation_ : 0, job.request.settings.slab_correction},
       job.clock);
   state.gpu.update(refined.topology(), refined.shape(), refined.generation(), job.clock);
+  update_surface(drawn, &refined, job);
   state.gpu.update_radiosity(state.light.radiosity(), state.light.generation(), job.clock);
   if (!job.needs.irradiance) return;
   state.gpu.update_irradiance(state.light.irradiance().of_vertex, &state.light, state.light.irradiance_generation(),
@@ -132,6 +152,7 @@ absl::Status ScenePainter::update_lit(const DrawnMesh& drawn, bool shadowed, Job
                              refractive_index, shadowed ? &shadows_ : nullptr, shadowed ? shadows_generation_ : 0},
                             job.clock);
   state.gpu.update(state.lit.topology(), state.lit.shape(), state.lit.generation(), job.clock);
+  update_surface(drawn, &state.lit, job);
   state.gpu.update_irradiance(state.vertex_light.irradiance(), &state.vertex_light, state.vertex_light.generation(),
                               job.clock);
   return absl::OkStatus();
@@ -148,6 +169,7 @@ absl::Status ScenePainter::update_mesh(const DrawnMesh& drawn, bool shadowed, Jo
   } else {
     state.placed.complete_normals(job.clock);
     state.gpu.update(drawn.mesh->topology, state.placed.shape(), state.placed.generation(), job.clock);
+    update_surface(drawn, nullptr, job);
   }
   if (job.request.settings.technique == Technique::kPaper) update_atlas(drawn, job);
   return absl::OkStatus();

@@ -23,14 +23,15 @@ struct PassFiles {
   const char* fragment;
   bool lit;       ///< has a variant for it
   bool channels;  ///< likewise
+  bool textured;  ///< likewise
 };
 
 // In the order of Shading::Pass.
-constexpr PassFiles kFiles[] = {{"atlas.vert", "atlas.frag", true, false},
-                                {"gbuffer.vert", "gbuffer.frag", true, false},
-                                {"integral.vert", "integral.frag", false, true},
-                                {"fullscreen.vert", "paper_shade.frag", true, true},
-                                {"fullscreen.vert", "lambert_shade.frag", true, true}};
+constexpr PassFiles kFiles[] = {{"atlas.vert", "atlas.frag", true, false, false},
+                                {"gbuffer.vert", "gbuffer.frag", true, false, true},
+                                {"integral.vert", "integral.frag", false, true, true},
+                                {"fullscreen.vert", "paper_shade.frag", true, true, true},
+                                {"fullscreen.vert", "lambert_shade.frag", true, true, true}};
 
 }  // namespace
 
@@ -45,7 +46,8 @@ absl::StatusOr<Shading> Shading::load(const gl::ShaderLibrary& library) {
 size_t Shading::slot_of(Pass pass, Variant variant) {
   const size_t lit = variant.lit && kFiles[pass].lit ? 1 : 0;
   const size_t channels = variant.channels && kFiles[pass].channels ? 2 : 0;
-  return kVariants * pass + lit + channels;
+  const size_t textured = variant.textured && kFiles[pass].textured ? 4 : 0;
+  return kVariants * pass + lit + channels + textured;
 }
 
 absl::Status Shading::load_program(Pass pass, Variant variant) {
@@ -54,6 +56,7 @@ absl::Status Shading::load_program(Pass pass, Variant variant) {
   std::string defines;
   if (variant.lit) defines += "#define LIT\n";
   if (variant.channels) defines += "#define CHANNELS\n";
+  if (variant.textured) defines += "#define TEXTURED\n";
   auto program = gl::load_program(library_, kFiles[pass].vertex, kFiles[pass].fragment, defines);
   if (!program.ok()) return program.status();
   slot.emplace(*std::move(program));
@@ -62,7 +65,9 @@ absl::Status Shading::load_program(Pass pass, Variant variant) {
 
 absl::Status Shading::prepare(Technique technique, Variant variant) {
   std::vector<Pass> passes;
-  if (technique == Technique::kIntegral) passes = {kIntegral};
+  // Extra channels and coats of the integral ask for the G-buffer.
+  if (technique == Technique::kIntegral) passes = {kIntegral, kGbuffer};
+  if (technique == Technique::kReference) passes = {kGbuffer};
   if (technique == Technique::kPaper) passes = {kAtlas, kGbuffer, kPaper};
   if (technique == Technique::kLambert) passes = {kGbuffer, kLambert};
   for (const Pass pass : passes) {

@@ -19,6 +19,7 @@ namespace diaphane::render {
 struct Variant {
   bool lit = false;       ///< E is not the shader's own but the vertices', shadows included (LIT)
   bool channels = false;  ///< irradiance and radiosity are made beside radiance (CHANNELS)
+  bool textured = false;  ///< textures and colours of vertices are read (TEXTURED)
 };
 
 /// Render thread only. Each `bind` uploads a block and leaves it bound for the draws that follow.
@@ -46,7 +47,7 @@ class Shading {
 
  private:
   enum Pass { kAtlas, kGbuffer, kIntegral, kPaper, kLambert, kPasses };
-  static constexpr size_t kVariants = 4;
+  static constexpr size_t kVariants = 8;
 
   explicit Shading(const gl::ShaderLibrary& library) : library_(library) {}
 

@@ -27,8 +27,9 @@ struct MaterialUniforms {
   glm::vec4 effective_transport_mm;
   glm::vec4 reduced_albedo;
   glm::vec4 total_reflectance;
+  glm::vec4 normal_map_scale{0};
 };
-static_assert(sizeof(MaterialUniforms) == 80);
+static_assert(sizeof(MaterialUniforms) == 96);
 
 struct BoxUniforms {
   glm::vec4 centre_mm{0};
@@ -58,12 +59,12 @@ struct LightStorage {
 static_assert(sizeof(LightStorage) == 64);
 
 /// The paper gives one mean free path: the kernel's width takes the mean of the three channels'.
-inline MaterialUniforms material_uniforms(const optics::Coefficients& material) {
+inline MaterialUniforms material_uniforms(const optics::Coefficients& material, float normal_scale = 0) {
   const optics::Dipole dipole = optics::make_dipole(material);
   const glm::vec3& l = dipole.mean_free_path_mm;
-  return {glm::vec4(l, material.refractive_index), glm::vec4(dipole.virtual_height_mm, (l.x + l.y + l.z) / 3),
-          glm::vec4(dipole.effective_transport_mm, 0), glm::vec4(dipole.reduced_albedo, 0),
-          glm::vec4(optics::total_reflectance(material), 0)};
+  return {glm::vec4(l, material.refractive_index),           glm::vec4(dipole.virtual_height_mm, (l.x + l.y + l.z) / 3),
+          glm::vec4(dipole.effective_transport_mm, 0),       glm::vec4(dipole.reduced_albedo, 0),
+          glm::vec4(optics::total_reflectance(material), 0), glm::vec4(normal_scale, 0, 0, 0)};
 }
 
 }  // namespace diaphane::render

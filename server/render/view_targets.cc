@@ -43,7 +43,6 @@ ViewTargets::ViewTargets(uint32_t width_px, uint32_t height_px, PixelFormat form
   attach(GL_COLOR_ATTACHMENT0, position_);
   attach(GL_COLOR_ATTACHMENT1, normal_);
   attach(GL_DEPTH_ATTACHMENT, depth_);
-  draw_to_first(2);
 
   glBindFramebuffer(GL_FRAMEBUFFER, shading_.id());
   attach(GL_COLOR_ATTACHMENT0, picture_);
@@ -53,17 +52,26 @@ ViewTargets::ViewTargets(uint32_t width_px, uint32_t height_px, PixelFormat form
   attach(GL_DEPTH_ATTACHMENT, depth_);
 }
 
-const ViewTargets::LitGbuffer& ViewTargets::lit_gbuffer() {
-  if (lit_gbuffer_.has_value()) return *lit_gbuffer_;
-  const LitGbuffer& made = lit_gbuffer_.emplace();
-  gl::storage_2d(made.irradiance, GL_RGBA32F, width_px_, height_px_);
-  glBindFramebuffer(GL_FRAMEBUFFER, made.framebuffer.id());
-  attach(GL_COLOR_ATTACHMENT0, position_);
-  attach(GL_COLOR_ATTACHMENT1, normal_);
-  attach(GL_COLOR_ATTACHMENT2, made.irradiance);
-  attach(GL_DEPTH_ATTACHMENT, depth_);
-  draw_to_first(3);
-  return made;
+/// To the bound framebuffer: what the variant has, and nothing where it has not.
+void ViewTargets::attach_gbuffer(Variant variant) {
+  if (variant.lit && !entering_.has_value()) {
+    gl::storage_2d(entering_.emplace(), GL_RGBA32F, width_px_, height_px_);
+  }
+  if (variant.textured && !textured_.has_value()) {
+    const Textured& made = textured_.emplace();
+    gl::storage_2d(made.albedo, GL_RGBA16F, width_px_, height_px_);
+    gl::storage_2d(made.coat, GL_RGBA16F, width_px_, height_px_);
+  }
+  GLenum drawn[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT0 + TARGET_NORMAL, GL_NONE, GL_NONE, GL_NONE};
+  const auto attach_or_detach = [&](GLuint target, const gl::Texture* texture) {
+    const GLenum attachment = GL_COLOR_ATTACHMENT0 + target;
+    if (texture != nullptr) drawn[target] = attachment;
+    glFramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture == nullptr ? 0 : texture->id(), 0);
+  };
+  attach_or_detach(TARGET_ENTERING, variant.lit ? &*entering_ : nullptr);
+  attach_or_detach(TARGET_ALBEDO, variant.textured ? &textured_->albedo : nullptr);
+  attach_or_detach(TARGET_COAT, variant.textured ? &textured_->coat : nullptr);
+  glDrawBuffers(TARGET_COAT + 1, drawn);
 }
 
 const ViewTargets::Channels& ViewTargets::channels() {
@@ -83,8 +91,9 @@ const ViewTargets::Channels& ViewTargets::channels() {
 }
 
 void ViewTargets::begin_gbuffer(Variant variant) {
-  glBindFramebuffer(GL_FRAMEBUFFER, variant.lit ? lit_gbuffer().framebuffer.id() : gbuffer_.id());
-  clear_colours(variant.lit ? 3 : 2);
+  glBindFramebuffer(GL_FRAMEBUFFER, gbuffer_.id());
+  attach_gbuffer(variant);
+  clear_colours(TARGET_COAT + 1);
   clear_depth();
 }
 
@@ -103,7 +112,8 @@ void ViewTargets::begin_shading(Variant variant) {
   glEnable(GL_FRAMEBUFFER_SRGB);
   gl::bind_texture(UNIT_GBUFFER_POSITION, GL_TEXTURE_2D, position_);
   gl::bind_texture(UNIT_GBUFFER_NORMAL, GL_TEXTURE_2D, normal_);
-  if (variant.lit) gl::bind_texture(UNIT_GBUFFER_IRRADIANCE, GL_TEXTURE_2D, lit_gbuffer().irradiance);
+  if (variant.lit) gl::bind_texture(UNIT_GBUFFER_IRRADIANCE, GL_TEXTURE_2D, *entering_);
+  if (variant.textured) gl::bind_texture(UNIT_GBUFFER_ALBEDO, GL_TEXTURE_2D, textured_->albedo);
 }
 
 void ViewTargets::read_back(uint32_t width_px, uint32_t height_px, void* pixels) const {
@@ -118,6 +128,13 @@ void ViewTargets::read_gbuffer(uint32_t width_px, uint32_t height_px, glm::vec4*
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   read_float(GL_COLOR_ATTACHMENT0, width_px, height_px, positions);
   read_float(GL_COLOR_ATTACHMENT1, width_px, height_px, normals);
+}
+
+void ViewTargets::read_textured(uint32_t width_px, uint32_t height_px, glm::vec4* albedo, glm::vec4* coat) const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, gbuffer_.id());
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  read_float(GL_COLOR_ATTACHMENT0 + TARGET_ALBEDO, width_px, height_px, albedo);
+  read_float(GL_COLOR_ATTACHMENT0 + TARGET_COAT, width_px, height_px, coat);
 }
 
 void ViewTargets::read_channels(uint32_t width_px, uint32_t height_px, glm::vec4* irradiance,

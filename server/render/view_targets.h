@@ -21,7 +21,8 @@ class ViewTargets {
     return width_px_ == width_px && height_px_ == height_px && format_ == format;
   }
 
-  /// Clears the G-buffer and makes it the target; E is a part of it where the variant is lit.
+  /// Clears the G-buffer and makes it the target; E is a part of it where the variant is lit, albedo and coat where it
+  /// is textured.
   void begin_gbuffer(Variant variant);
   /// Clears the picture to transparent black and the depth, and makes both the target: for meshes drawn straight into
   /// it. Channels of the variant likewise.
@@ -36,13 +37,16 @@ class ViewTargets {
   /// Reads the G-buffer: mm and mesh id, normal and facet sine; RGBA32F, rows bottom to top.
   void read_gbuffer(uint32_t width_px, uint32_t height_px, glm::vec4* positions, glm::vec4* normals) const;
 
+  /// Reads what a textured G-buffer has more: the albedo in rgb; the coat's normal, and in a the share of its alpha.
+  void read_textured(uint32_t width_px, uint32_t height_px, glm::vec4* albedo, glm::vec4* coat) const;
+
   /// Reads what the last pass with channels left: E and B in rgb, RGBA32F, rows bottom to top.
   void read_channels(uint32_t width_px, uint32_t height_px, glm::vec4* irradiance, glm::vec4* radiosity) const;
 
  private:
-  struct LitGbuffer {
-    gl::Texture irradiance;
-    gl::Framebuffer framebuffer;
+  struct Textured {
+    gl::Texture albedo;
+    gl::Texture coat;
   };
   struct Channels {
     gl::Texture irradiance;
@@ -50,7 +54,7 @@ class ViewTargets {
     gl::Framebuffer shading;
     gl::Framebuffer forward;
   };
-  const LitGbuffer& lit_gbuffer();
+  void attach_gbuffer(Variant variant);
   const Channels& channels();
 
   uint32_t width_px_;
@@ -63,7 +67,8 @@ class ViewTargets {
   gl::Framebuffer gbuffer_;
   gl::Framebuffer shading_;
   gl::Framebuffer forward_;
-  std::optional<LitGbuffer> lit_gbuffer_;
+  std::optional<gl::Texture> entering_;
+  std::optional<Textured> textured_;
   std::optional<Channels> channels_;
 };
 

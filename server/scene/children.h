@@ -14,6 +14,7 @@
 namespace diaphane::scene {
 
 inline const std::string& name_of(const Material& material) { return material.name; }
+inline const std::string& name_of(const Texture& texture) { return texture.name; }
 inline const std::string& name_of(const Light& light) { return light.name; }
 inline const std::string& name_of(const std::shared_ptr<const Mesh>& mesh) { return mesh->name; }
 

@@ -30,6 +30,8 @@ std::string_view collection_id(Collection collection) {
       return "lights";
     case Collection::kMeshes:
       return "meshes";
+    case Collection::kTextures:
+      return "textures";
   }
   std::abort();
 }

@@ -15,9 +15,9 @@ struct Reference {
   std::string_view name;
 };
 
-enum class Collection { kMaterials, kLights, kMeshes };
+enum class Collection { kMaterials, kLights, kMeshes, kTextures };
 
-/// "materials", "lights" or "meshes".
+/// "materials", "lights", "meshes" or "textures".
 std::string_view collection_id(Collection collection);
 
 /// scenes/{scene} with 128 bits from the kernel's generator: it cannot be guessed. Thread-safe.

@@ -34,6 +34,7 @@ struct NewMaterial {
   optics::MaterialForm form;
   optics::Profile profile = optics::Profile::kDipole;
   std::optional<optics::Coat> coat{};
+  SurfaceTextures textures{};
 };
 
 /// What is given replaces what was there.
@@ -41,6 +42,7 @@ struct MaterialPatch {
   std::optional<optics::MaterialForm> form;
   std::optional<optics::Profile> profile;
   std::optional<std::optional<optics::Coat>> coat;  ///< an empty one takes the coat off
+  std::optional<SurfaceTextures> textures{};
 };
 
 /// A whole light, or parts of one that is a point light.
@@ -65,6 +67,8 @@ struct MeshCounts {
   uint32_t vertex_count = 0;
   uint32_t triangle_count = 0;
   bool has_normals = false;
+  bool has_texture_coordinates = false;
+  bool has_colors = false;
 };
 
 struct NewMesh {
@@ -72,6 +76,7 @@ struct NewMesh {
   glm::mat4 scene_from_mesh{1};
   std::shared_ptr<const geometry::MeshTopology> topology;
   std::shared_ptr<const geometry::MeshShape> shape;
+  std::shared_ptr<const geometry::SurfaceAttributes> attributes{};  ///< null: none
 };
 
 /// A resource after a mutation, and the scene's revision that the mutation made.
@@ -102,6 +107,7 @@ class SceneStore {
   absl::StatusOr<SnapshotPtr> update_scene(const Reference& scene, const ScenePatch& patch);
   absl::Status delete_scene(const Reference& scene) ABSL_LOCKS_EXCLUDED(mutex_);
 
+  /// Textures that a material names must be of its scene: else INVALID_ARGUMENT, or NOT_FOUND.
   absl::StatusOr<Changed<Material>> create_material(const Reference& parent, const NewMaterial& material);
   absl::StatusOr<Material> material(const Reference& material) const;
   absl::StatusOr<Changed<Material>> update_material(const Reference& material, const MaterialPatch& patch);
@@ -142,8 +148,17 @@ class SceneStore {
                                                              const EnvironmentPatch& patch);
   absl::StatusOr<uint64_t> delete_environment(const Reference& environment);
 
+  /// Reserves what a texture of that size takes, its copy on the GPU included. RESOURCE_EXHAUSTED past
+  /// max_textures_per_scene or max_mesh_bytes.
+  absl::StatusOr<Reservation> reserve_texture(const Reference& parent, uint32_t width_px, uint32_t height_px);
+  /// `reservation` is from reserve_texture for this size.
+  absl::StatusOr<Changed<Texture>> create_texture(const Reference& parent, Texture texture, Reservation reservation);
+  absl::StatusOr<Texture> texture(const Reference& texture) const;
+  /// FAILED_PRECONDITION while a material uses it.
+  absl::StatusOr<uint64_t> delete_texture(const Reference& texture);
+
   const SceneLimits& limits() const { return limits_; }
-  /// Of all meshes, environments and uploads in flight.
+  /// Of all meshes, environments, textures and uploads in flight.
   uint64_t mesh_bytes() const { return budget_.used_bytes(); }
 
  private:

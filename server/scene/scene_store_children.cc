@@ -22,13 +22,35 @@ void set_form(Material* material, const optics::MaterialForm& form, optics::Prof
   material->warnings = std::move(resolved.warnings);
 }
 
+absl::Status check_texture(const SceneSnapshot& scene, const Reference& texture, bool may_be_srgb) {
+  if (texture.name.empty()) return absl::OkStatus();
+  const absl::StatusOr<std::string> parent = scene_of_child(texture, Collection::kTextures);
+  if (!parent.ok()) return parent.status();
+  if (*parent != scene.name) {
+    return base::invalid_field(texture.field, fmt::format("a texture of {}", scene.name), texture.name);
+  }
+  const Texture* found = texture_of(scene, std::string(texture.name));
+  if (found == nullptr) return not_found(texture, "texture");
+  if (may_be_srgb || !found->sampling.srgb) return absl::OkStatus();
+  return base::invalid_field(texture.field, "a texture that is not srgb", texture.name);
+}
+
+absl::Status check_textures(const SceneSnapshot& scene, const SurfaceTextures& textures) {
+  absl::Status status = check_texture(scene, {"material.textures.albedo", textures.albedo}, true);
+  if (status.ok()) status = check_texture(scene, {"material.textures.normal", textures.normal}, false);
+  if (status.ok()) status = check_texture(scene, {"material.textures.roughness", textures.roughness}, false);
+  return status;
+}
+
 }  // namespace
 
 absl::StatusOr<Changed<Material>> SceneStore::create_material(const Reference& parent, const NewMaterial& material) {
   Material created;
   set_form(&created, material.form, material.profile);
   created.coat = material.coat;
+  created.textures = material.textures;
   const auto scene = mutate(parent, [&](SceneSnapshot& draft) {
+    if (absl::Status known = check_textures(draft, created.textures); !known.ok()) return known;
     absl::Status room = check_room_for_one(draft.materials, Collection::kMaterials, limits_.max_materials_per_scene);
     if (!room.ok()) return room;
     created.name = make_child_name(draft.name, Collection::kMaterials, draft.revision);
@@ -52,6 +74,10 @@ absl::StatusOr<Changed<Material>> SceneStore::update_material(const Reference& m
   const auto scene = mutate_parent(material, Collection::kMaterials, [&](SceneSnapshot& draft) {
     const auto found = find_child(draft.materials, material.name);
     if (found == draft.materials.end()) return not_found(material, "material");
+    if (patch.textures.has_value()) {
+      if (absl::Status known = check_textures(draft, *patch.textures); !known.ok()) return known;
+      found->textures = *patch.textures;
+    }
     set_form(&*found, patch.form.value_or(found->form), patch.profile.value_or(found->coefficients.profile));
     if (patch.coat.has_value()) found->coat = *patch.coat;
     changed = {*found, draft.revision};

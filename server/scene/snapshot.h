@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geometry/shape.h"
+#include "geometry/surface_attributes.h"
 #include "geometry/topology.h"
 #include "glm/mat4x4.hpp"
 #include "glm/vec3.hpp"
@@ -18,12 +19,43 @@
 
 namespace diaphane::scene {
 
+/// The pixels of a texture: 8-bit RGBA, rows from the upper edge down.
+struct TexturePixels {
+  uint32_t width_px = 0;
+  uint32_t height_px = 0;
+  std::vector<uint8_t> rgba;
+};
+
+/// How pixels are read.
+struct TextureSampling {
+  bool srgb = false;     ///< RGB is sRGB-coded; else linear
+  bool clamp_u = false;  ///< beyond 0..1 the edge is held; else the picture repeats
+  bool clamp_v = false;
+  bool operator==(const TextureSampling&) const = default;
+};
+
+struct Texture {
+  std::string name;  ///< scenes/{scene}/textures/{texture}
+  std::shared_ptr<const TexturePixels> pixels;
+  TextureSampling sampling;
+};
+
+/// Names of textures of the same scene; empty: none.
+struct SurfaceTextures {
+  std::string albedo;     ///< multiplies what leaves the body
+  std::string normal;     ///< the coat's, tangent space
+  std::string roughness;  ///< green multiplies the coat's
+  float normal_scale = 1;
+  bool any() const { return !albedo.empty() || !normal.empty() || !roughness.empty(); }
+};
+
 struct Material {
   std::string name;  ///< scenes/{scene}/materials/{material}
   optics::MaterialForm form;
   optics::Coefficients coefficients;    ///< what the form comes to, with the profile that was asked for
   std::vector<std::string> warnings{};  ///< what is doubtful about them, a sentence each
   std::optional<optics::Coat> coat{};   ///< not given: none
+  SurfaceTextures textures{};
 };
 
 /// Shines in all directions; irradiance falls with the square of the distance in millimetres.
@@ -67,9 +99,10 @@ struct Mesh {
   std::string name;  ///< scenes/{scene}/meshes/{mesh}
   std::string material;
   glm::mat4 scene_from_mesh{1};
-  std::shared_ptr<const geometry::MeshTopology> topology;  ///< the same object as long as the triangles are
-  std::shared_ptr<const geometry::MeshShape> shape;        ///< a new object whenever positions change
-  uint64_t positions_revision = 0;                         ///< scene revision at which `shape` last changed
+  std::shared_ptr<const geometry::MeshTopology> topology;           ///< the same object as long as the triangles are
+  std::shared_ptr<const geometry::MeshShape> shape;                 ///< a new object whenever positions change
+  uint64_t positions_revision = 0;                                  ///< scene revision at which `shape` last changed
+  std::shared_ptr<const geometry::SurfaceAttributes> attributes{};  ///< null: none
 };
 
 /// Stages compare the shared pointers and values in here to learn what changed; there is nothing else to compare.
@@ -80,6 +113,7 @@ struct SceneSnapshot {
   double millimetres_per_unit = 1;
   std::vector<std::shared_ptr<const Mesh>> meshes;
   std::vector<Material> materials;
+  std::vector<Texture> textures;
   std::vector<Light> lights;
   std::shared_ptr<const Environment> environment;  ///< null: none
 };
@@ -88,6 +122,14 @@ struct SceneSnapshot {
 inline const Material* material_of(const SceneSnapshot& scene, const Mesh& mesh) {
   for (const Material& material : scene.materials) {
     if (material.name == mesh.material) return &material;
+  }
+  return nullptr;
+}
+
+/// The texture of that name; null where the scene has none.
+inline const Texture* texture_of(const SceneSnapshot& scene, const std::string& name) {
+  for (const Texture& texture : scene.textures) {
+    if (texture.name == name) return &texture;
   }
   return nullptr;
 }

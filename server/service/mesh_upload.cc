@@ -30,6 +30,9 @@ absl::Status MeshUpload::apply(const Payload& payload, v1::MeshResponse& respons
   mesh_.topology = *std::move(topology);
   mesh_.shape = std::make_shared<const geometry::MeshShape>(
       geometry::MeshShape{std::move(arrays->positions), std::move(arrays->normals)});
+  if (!arrays->attributes.empty()) {
+    mesh_.attributes = std::make_shared<const geometry::SurfaceAttributes>(std::move(arrays->attributes));
+  }
   const auto created = store_.create_mesh({"parent", parent_}, std::move(mesh_), std::move(reservation_));
   if (!created.ok()) return created.status();
   to_proto(*created, response);

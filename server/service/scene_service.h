@@ -48,6 +48,11 @@ class SceneService final : public v1::SceneService::CallbackService {
   Unary* DeleteMesh(Context*, const v1::DeleteMeshRequest*, v1::DeleteResponse*) override;
   Reads<v1::UpdatePositionsRequest>* UpdatePositions(Context*, v1::MeshResponse*) override;
 
+  Reads<v1::UploadTextureRequest>* UploadTexture(Context*, v1::TextureResponse*) override;
+  Unary* GetTexture(Context*, const v1::GetTextureRequest*, v1::Texture*) override;
+  Unary* ListTextures(Context*, const v1::ListTexturesRequest*, v1::ListTexturesResponse*) override;
+  Unary* DeleteTexture(Context*, const v1::DeleteTextureRequest*, v1::DeleteResponse*) override;
+
   Reads<v1::UploadEnvironmentRequest>* UploadEnvironment(Context*, v1::EnvironmentResponse*) override;
   Unary* GetEnvironment(Context*, const v1::GetEnvironmentRequest*, v1::Environment*) override;
   Unary* UpdateEnvironment(Context*, const v1::UpdateEnvironmentRequest*, v1::EnvironmentResponse*) override;

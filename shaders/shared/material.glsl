@@ -9,6 +9,7 @@ layout(std140, binding = UNIFORMS_MATERIAL) uniform MaterialUniforms {
   vec4 effective_transport_mm;  // rgb
   vec4 reduced_albedo;          // rgb
   vec4 total_reflectance;       // rgb
+  vec4 normal_map_scale;        // x: 0 where there is none
 };
 
 vec3 source_term(vec3 height_mm, float squared_distance_mm) {

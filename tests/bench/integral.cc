@@ -71,10 +71,11 @@ void render(render::FrameRenderer& renderer, const render::FrameRequest& request
   (*times)["update"].push_back(update);
 }
 
-/// What a row has beside the plain frame: nothing (-), the slab correction, a profile, an environment, or a coat in the
-/// light or in an environment.
-const std::vector<std::string> kExtras = {"-",           "slab", "better-dipole",   "normalized-diffusion",
-                                          "environment", "coat", "coat+environment"};
+/// What a row has beside the plain frame: nothing (-), the slab correction, a profile, an environment, a coat in the
+/// light or in an environment, an albedo, or that and a coat with normal and roughness maps.
+const std::vector<std::string> kExtras = {"-",           "slab", "better-dipole",    "normalized-diffusion",
+                                          "environment", "coat", "coat+environment", "albedo",
+                                          "coat+maps"};
 
 /// A sky without lamps, so that the row tells the harmonics and the map alone.
 std::shared_ptr<const scene::Environment> sky() {
@@ -87,6 +88,22 @@ std::shared_ptr<const scene::Environment> sky() {
       scene::Environment{"environment", std::make_shared<const optics::LatLongMap>(std::move(map)), std::move(light)});
 }
 
+/// 1024² of no particular pattern, thrown on the mesh from its front.
+void add_pictures(const testing::Mesh& mesh, bool maps, scene::SceneSnapshot& scene) {
+  scene::TexturePixels pixels{1024, 1024, {}};
+  pixels.rgba.resize(4 * 1024 * 1024);
+  for (size_t i = 0; i < pixels.rgba.size(); ++i) pixels.rgba[i] = static_cast<uint8_t>(128 + i * 2654435761u % 127);
+  const auto shared = std::make_shared<const scene::TexturePixels>(std::move(pixels));
+  scene.textures = {{"albedo", shared, {.srgb = true}}, {"map", shared, {}}};
+  scene.materials.front().textures = {.albedo = "albedo"};
+  if (maps) scene.materials.front().textures = {.albedo = "albedo", .normal = "map", .roughness = "map"};
+  geometry::SurfaceAttributes attributes;
+  for (const glm::vec3& p : mesh.positions_mm) attributes.texture_coordinates.emplace_back(0.1f * p.x, -0.1f * p.y);
+  auto textured = std::make_shared<scene::Mesh>(*scene.meshes.front());
+  textured->attributes = std::make_shared<const geometry::SurfaceAttributes>(std::move(attributes));
+  scene.meshes.front() = std::move(textured);
+}
+
 Times measure(const testing::Mesh& mesh, const Settings& settings, bool shadows, const std::string& extra,
               render::FrameRenderer& renderer) {
   const bool profile = extra == "better-dipole" || extra == "normalized-diffusion";
@@ -94,6 +111,7 @@ Times measure(const testing::Mesh& mesh, const Settings& settings, bool shadows,
                                        bench::lights(settings.coloured));
   if (extra.ends_with("environment")) scene->environment = sky();
   if (extra.starts_with("coat")) scene->materials.front().coat = optics::Coat{0.1f};
+  if (extra == "albedo" || extra == "coat+maps") add_pictures(mesh, extra == "coat+maps", *scene);
   bench::LambertFrame lambert(mesh.triangles, settings.size_px);
   render::FrameRequest request;
   request.width_px = request.height_px = settings.size_px;
@@ -232,7 +250,9 @@ int main(int argc, char** argv) {
   auto* threads = list("--threads", settings.threads, "this many, in this process alone; default: one and two");
   list("--simd", settings.simd, "levels to compare, such as AVX2,SSE4; default the best");
   list("--shadows", settings.shadows, "off,on")->check(CLI::IsMember({"on", "off"}));
-  list("--extras", settings.extras, "rows: - (the plain frame), slab, a profile, environment, coat, coat+environment")
+  list("--extras", settings.extras,
+       "rows: - (the plain frame), slab, a profile, environment, coat, coat+environment, albedo, "
+       "coat+maps")
       ->check(CLI::IsMember(diaphane::kExtras));
   app.add_option("--material", settings.material, "preset");
   app.add_option("--quality", settings.quality)->check(CLI::IsMember({"draft", "normal", "fine"}));

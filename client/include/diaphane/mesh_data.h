@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct MeshData {
   std::vector<TextureCoordinate> texture_coordinates;  ///< empty, or one per position
   std::vector<uint32_t> triangles;  ///< three indices into `positions` per triangle, counter-clockwise from outside
 
+  std::optional<size_t> material;  ///< into the `materials` of the LoadedFile that it came with
   /// Mesh units to scene units: column-major 4×4, affine and invertible.
   std::array<float, 16> scene_from_mesh = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 };

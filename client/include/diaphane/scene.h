@@ -15,6 +15,7 @@
 #include "diaphane/environment.h"
 #include "diaphane/mesh_data.h"
 #include "diaphane/render_options.h"
+#include "diaphane/texture.h"
 #include "diaphane/values.h"
 
 namespace diaphane {
@@ -45,6 +46,7 @@ struct SceneInfo {
   uint32_t material_count = 0;
   uint32_t light_count = 0;
   bool has_environment = false;
+  uint32_t texture_count = 0;
 };
 
 struct MaterialInfo {
@@ -67,6 +69,8 @@ struct MeshInfo {
   uint32_t triangle_count = 0;
   bool has_normals = false;  ///< given ones are in force; else they are computed
   uint64_t positions_revision = 0;
+  bool has_texture_coordinates = false;
+  bool has_colors = false;
 };
 
 /// A scene and all that is in it, read by several calls: not one moment's state while others change the scene.
@@ -103,6 +107,12 @@ class Scene {
   /// Errors: FAILED_PRECONDITION while a mesh uses it.
   absl::StatusOr<uint64_t> remove_material(const MaterialHandle& handle) const;
 
+  /// Uploads a picture for surfaces. Errors: INVALID_ARGUMENT a size out of range, or other pixels than it says;
+  /// RESOURCE_EXHAUSTED past a limit.
+  absl::StatusOr<TextureHandle> add_texture(const TextureData& texture) const;
+  /// Errors: FAILED_PRECONDITION while a material uses it.
+  absl::StatusOr<uint64_t> remove_texture(const TextureHandle& handle) const;
+
   absl::StatusOr<LightHandle> add_light(const Light& light) const;
   absl::StatusOr<uint64_t> update_light(const LightHandle& handle, const Light& light) const;
   absl::StatusOr<uint64_t> remove_light(const LightHandle& handle) const;
@@ -114,7 +124,7 @@ class Scene {
   absl::StatusOr<uint64_t> update_environment(const EnvironmentOptions& options) const;
   absl::StatusOr<uint64_t> remove_environment() const;
 
-  /// Uploads a mesh, its scene_from_mesh included, in chunks of at most 1 MiB.
+  /// Uploads a mesh, its scene_from_mesh, texture coordinates and colours included, in chunks of at most 1 MiB.
   ///
   /// Errors: INVALID_ARGUMENT no triangle, an index past the last vertex, a position that is not finite, normals that
   /// are neither none nor one per position; RESOURCE_EXHAUSTED past a limit of ServerInfo.

@@ -29,12 +29,15 @@ namespace diaphane {
 ///      "size":      {"width_px": 640, "height_px": 480}}
 ///
 /// Only meshes must be there. `name` is how meshes of this file refer to a material, and must be its own; a mesh
-/// without a material has kDefaultPreset. `file` is relative to the scene file and does not leave its folder; its own
-/// placement is applied before `scene_from_mesh`.
+/// without a material has its file's own, or else kDefaultPreset. The `textures` of a material are files (PNG, JPEG,
+/// WebP):
+/// `{"albedo": "skin.png", "normal": "pores.png", "roughness": "oil.png", "normal_scale": 1}`. A file is relative to
+/// the scene file and does not leave its folder; its own placement is applied before `scene_from_mesh`.
 struct SceneFile {
   struct NamedMaterial {
     std::string name;
-    Material material;
+    Material material;                                               ///< without textures, but for normal_scale
+    std::filesystem::path albedo_file, normal_file, roughness_file;  ///< the scene file's folder included; empty: none
   };
   struct MeshFile {
     std::filesystem::path path;      ///< the scene file's folder included

@@ -91,12 +91,26 @@ struct Coat {
   float roughness = 0;  ///< GGX α, 0..1; 0: a mirror
 };
 
+/// A texture of a scene, as the server named it: scenes/{scene}/textures/{texture}.
+struct TextureHandle {
+  std::string name;
+};
+
+/// Pictures on the surface of meshes with texture coordinates; each is applied once.
+struct SurfaceTextures {
+  std::optional<TextureHandle> albedo;     ///< multiplies what leaves the body
+  std::optional<TextureHandle> normal;     ///< the coat's; tangent space, +y up; not of an sRGB texture
+  std::optional<TextureHandle> roughness;  ///< green, squared, multiplies the coat's; not of an sRGB texture
+  float normal_scale = 1;                  ///< of the normal map, above 0, up to 4
+};
+
 /// What a body is made of: the name of a preset (Client::material_presets), free coefficients, or another form that the
 /// server turns into them.
 struct Material {
   std::variant<std::string, Coefficients, DiffuseColor, Volume> model = std::string(kDefaultPreset);
   Profile profile = Profile::kDipole;
   std::optional<Coat> coat{};  ///< not given: none
+  SurfaceTextures textures{};
 };
 
 /// A material that the server knows by name.

@@ -11,6 +11,7 @@
 #include "readers/gltf_buffers.h"
 #include "readers/gltf_document.h"
 #include "readers/gltf_draco.h"
+#include "readers/gltf_materials.h"
 #include "readers/gltf_matrix.h"
 #include "readers/gltf_model.h"
 #include "readers/gltf_scene.h"
@@ -31,10 +32,11 @@ bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) 
 class GltfReader {
  public:
   GltfReader(const tinygltf::Model& model, const GltfExtensions& extensions, const GltfBuffers& buffers,
-             const Source& source)
+             const nlohmann::json& looks, const Source& source)
       : model_(model),
         extensions_(extensions),
         accessors_(model, extensions, buffers, source),
+        materials_(looks, accessors_, source),
         skins_(model, placement_, accessors_, source),
         source_(source),
         most_bytes_(24 * source.limits.max_vertices + 12 * source.limits.max_triangles) {}
@@ -55,6 +57,9 @@ class GltfReader {
       }
     }
     for (const auto& [what, count] : skipped_) file_.warnings.push_back(fmt::format("left out: {} {}", count, what));
+    for (std::string& warning : materials_.take_warnings()) file_.warnings.push_back(std::move(warning));
+    file_.materials = materials_.take_materials();
+    file_.textures = materials_.take_textures();
     if (!file_.meshes.empty()) return std::move(file_);
     return nothing_to_render(source_, vertices_, fmt::format("{}", fmt::join(file_.warnings, ", ")));
   }
@@ -171,11 +176,15 @@ class GltfReader {
       make_linear(*colours, ColourCoding::kLinear);
       data.colors = *std::move(colours);
     }
-    if (const auto texture = primitive.attributes.find("TEXCOORD_0"); texture != primitive.attributes.end()) {
+    const std::optional<GltfMaterials::Use> use = materials_.use(primitive.material);
+    if (use) data.material = use->material;
+    const std::string set = fmt::format("TEXCOORD_{}", use ? use->texture_coordinate_set : 0);
+    if (const auto texture = primitive.attributes.find(set); texture != primitive.attributes.end()) {
       absl::StatusOr<std::vector<TextureCoordinate>> coordinates =
           accessors_.read_texture_coordinates(texture->second, count);
       if (!coordinates.ok()) return coordinates.status();
       data.texture_coordinates = *std::move(coordinates);
+      if (use) apply(use->transform, data.texture_coordinates);
     }
     return absl::OkStatus();
   }
@@ -224,9 +233,9 @@ class GltfReader {
       ++skipped_["normals that are not finite or beyond 1e18"];
     }
     for (TextureCoordinate& coordinate : data.texture_coordinates) {
-      if (std::isfinite(coordinate.u) && std::isfinite(coordinate.v)) continue;
+      if (is_texture_coordinate(coordinate.u, coordinate.v)) continue;
       coordinate = {};
-      ++skipped_["texture coordinates that are not finite"];
+      ++skipped_["texture coordinates that are not finite or beyond 1e6"];
     }
     return absl::OkStatus();
   }
@@ -284,6 +293,7 @@ class GltfReader {
   const GltfExtensions& extensions_;
   GltfPlacement placement_;
   GltfAccessors accessors_;
+  GltfMaterials materials_;
   GltfSkins skins_;
   const Source& source_;
   const uint64_t most_bytes_;
@@ -304,7 +314,7 @@ absl::StatusOr<LoadedFile> read_gltf(std::string bytes, const Source& source) {
   if (!buffers.ok()) return buffers.status();
   const absl::StatusOr<tinygltf::Model> model = parse_gltf_model(*document, source);
   if (!model.ok()) return model.status();
-  return GltfReader(*model, document->extensions, *buffers, source).read();
+  return GltfReader(*model, document->extensions, *buffers, document->looks, source).read();
 }
 
 }  // namespace diaphane::readers

@@ -46,9 +46,9 @@ bool is_inside(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-absl::StatusOr<std::string> load_file(const std::string& uri, size_t index, uint64_t max_bytes, const Source& source) {
+absl::StatusOr<std::string> load_file(const std::string& uri, uint64_t max_bytes, const Source& source) {
   Source buffer = source;
-  buffer.name = fmt::format("{}: buffer {} {}", source.name, index, in_quotes(uri));
+  buffer.name = fmt::format("{} {}", source.name, in_quotes(uri));
   const std::optional<std::string> path = percent_decoded(uri);
   if (!path || !is_plain_relative(*path) || source.folder.empty()) {
     return buffer.malformed("may not be opened", "", "must be a relative path inside the file's own folder");
@@ -71,7 +71,26 @@ bool is_fallback(const json& entry) {
   });
 }
 
+absl::StatusOr<std::vector<unsigned char>> decode_data_uri(const std::string& text, std::string_view where,
+                                                           const Source& source) {
+  std::string mime_type;
+  std::vector<unsigned char> decoded;
+  if (!tinygltf::IsDataURI(text) || !tinygltf::DecodeDataURI(&decoded, mime_type, text, 0, false)) {
+    return source.malformed(fmt::format("data URI {}", in_quotes(text)), where, "must be base64 of a binary kind");
+  }
+  return decoded;
+}
+
+bool is_data_uri(const std::string& uri) { return uri.rfind("data:", 0) == 0; }
+
 }  // namespace
+
+absl::StatusOr<std::string> load_gltf_uri(const std::string& uri, const Source& source) {
+  if (!is_data_uri(uri)) return load_file(uri, source.limits.max_file_bytes, source);
+  const absl::StatusOr<std::vector<unsigned char>> decoded = decode_data_uri(uri, {}, source);
+  if (!decoded.ok()) return decoded.status();
+  return std::string(decoded->begin(), decoded->end());
+}
 
 absl::StatusOr<GltfBuffers> GltfBuffers::load(GltfDocument& document, const Source& source) {
   GltfBuffers buffers;
@@ -96,17 +115,16 @@ absl::StatusOr<GltfBuffers> GltfBuffers::load(GltfDocument& document, const Sour
       }
       if (index != 0 || !document.has_chunk) return source.malformed("no uri and no binary chunk", where);
       view = document.binary_chunk();
-    } else if (uri->get_ref<const std::string&>().rfind("data:", 0) == 0) {
+    } else if (is_data_uri(uri->get_ref<const std::string&>())) {
       const std::string text = std::move(uri->get_ref<std::string&>());
-      std::string mime_type;
-      std::vector<unsigned char> decoded;
-      if (!tinygltf::IsDataURI(text) || !tinygltf::DecodeDataURI(&decoded, mime_type, text, 0, false)) {
-        return source.malformed(fmt::format("data URI {}", in_quotes(text)), where, "must be base64 of a binary kind");
-      }
-      buffers.decoded_.push_back(std::move(decoded));
+      absl::StatusOr<std::vector<unsigned char>> decoded = decode_data_uri(text, where, source);
+      if (!decoded.ok()) return decoded.status();
+      buffers.decoded_.push_back(*std::move(decoded));
       view = {reinterpret_cast<const char*>(buffers.decoded_.back().data()), buffers.decoded_.back().size()};
     } else {
-      absl::StatusOr<std::string> file = load_file(uri->get<std::string>(), index, bytes_left, source);
+      Source buffer = source;
+      buffer.name = fmt::format("{}: {}", source.name, where);
+      absl::StatusOr<std::string> file = load_file(uri->get<std::string>(), bytes_left, buffer);
       if (!file.ok()) return file.status();
       bytes_left -= file->size();
       buffers.files_.push_back(*std::move(file));

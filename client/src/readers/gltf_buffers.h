@@ -29,4 +29,8 @@ class GltfBuffers {
   std::vector<std::string_view> views_;
 };
 
+/// The bytes of a data URI or of a file inside source.folder, as above; at most limits.max_file_bytes. Errors in the
+/// name of `source`.
+absl::StatusOr<std::string> load_gltf_uri(const std::string& uri, const Source& source);
+
 }  // namespace diaphane::readers

@@ -14,8 +14,10 @@
 namespace diaphane::readers {
 
 /// The extensions that are read, all that a document keeps.
-inline constexpr std::string_view kReadExtensions[] = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
-                                                       "KHR_meshopt_compression", "EXT_mesh_gpu_instancing"};
+inline constexpr std::string_view kReadExtensions[] = {
+    "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression",      "EXT_mesh_gpu_instancing",
+    "KHR_materials_ior",          "KHR_materials_volume",    "KHR_materials_volume_scatter", "KHR_materials_clearcoat",
+    "KHR_texture_transform",      "EXT_texture_webp"};
 
 /// EXT_meshopt_compression, KHR_meshopt_compression: where the compressed bytes of a buffer view lie.
 struct GltfMeshopt {

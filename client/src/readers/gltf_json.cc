@@ -10,9 +10,9 @@
 namespace diaphane::readers {
 namespace {
 
-constexpr std::string_view kRootMembers[] = {"accessors", "asset", "bufferViews",    "buffers",
-                                             "scenes",    "scene", "extensionsUsed", "extensionsRequired",
-                                             "meshes",    "nodes", "skins"};
+constexpr std::string_view kRootMembers[] = {
+    "accessors", "asset", "bufferViews", "buffers",   "scenes",   "scene",  "extensionsUsed", "extensionsRequired",
+    "meshes",    "nodes", "skins",       "materials", "textures", "images", "samplers"};
 constexpr std::string_view kLeftOut[] = {"extras", "max", "min"};
 constexpr int kNumberOutOfRange = 406;  // nlohmann::json::out_of_range
 

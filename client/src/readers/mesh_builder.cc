@@ -77,7 +77,7 @@ void MeshBuilder::set_texture_coordinate(uint32_t vertex, double u, double v_fro
   auto& coordinates = mesh_.texture_coordinates;
   if (coordinates.size() <= vertex) coordinates.resize(size_t{vertex} + 1);
   const double v = 1 - v_from_below;
-  if (fits_float(u) && fits_float(v)) {
+  if (is_texture_coordinate(u, v)) {
     coordinates[vertex] = {static_cast<float>(u), static_cast<float>(v)};
   } else {
     ++bad_texture_coordinates_;
@@ -149,7 +149,7 @@ absl::StatusOr<LoadedFile> MeshBuilder::finish() {
   if (bad_normals_ > 0) warn(fmt::format("left out: {} normals that are not finite or beyond 1e18", bad_normals_));
   if (bad_colours_ > 0) warn(fmt::format("left out: {} colours that are not finite", bad_colours_));
   if (bad_texture_coordinates_ > 0) {
-    warn(fmt::format("left out: {} texture coordinates that are not finite", bad_texture_coordinates_));
+    warn(fmt::format("left out: {} texture coordinates that are not finite or beyond 1e6", bad_texture_coordinates_));
   }
   if (splitter_.fanned() > 0) {
     warn(fmt::format("{} concave polygons were split as fans: self-intersecting or of more than {} corners",

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -16,6 +17,13 @@ namespace diaphane::readers {
 
 /// Beyond it, as the contract has it, a normal is refused.
 inline constexpr double kLargestNormal = 1e18;
+
+/// Of texture coordinates; the contract takes no larger ones.
+inline constexpr double kLargestTextureCoordinate = 1e6;
+
+inline bool is_texture_coordinate(double u, double v) {
+  return std::abs(u) <= kLargestTextureCoordinate && std::abs(v) <= kLargestTextureCoordinate;
+}
 
 using Double3 = std::array<double, 3>;
 

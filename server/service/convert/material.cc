@@ -135,6 +135,20 @@ absl::StatusOr<std::optional<optics::Coat>> coat_from_proto(const v1::Material& 
   return std::optional<optics::Coat>({.roughness = message.coat().roughness()});
 }
 
+absl::StatusOr<scene::SurfaceTextures> textures_from_proto(const v1::SurfaceTextures& message) {
+  absl::Status within = check_range("material.textures.normal_scale", message.normal_scale(), 0, 4);
+  if (!within.ok()) return within;
+  return scene::SurfaceTextures{message.albedo(), message.normal(), message.roughness(),
+                                message.normal_scale() == 0 ? 1.0f : message.normal_scale()};
+}
+
+void to_proto(const scene::SurfaceTextures& textures, v1::SurfaceTextures& message) {
+  message.set_albedo(textures.albedo);
+  message.set_normal(textures.normal);
+  message.set_roughness(textures.roughness);
+  message.set_normal_scale(textures.normal_scale);
+}
+
 absl::StatusOr<optics::Profile> from_proto(v1::Profile profile) {
   switch (profile) {
     case v1::PROFILE_UNSPECIFIED:
@@ -196,21 +210,22 @@ void to_proto(const optics::MaterialForm& form, v1::Material& message) {
 }  // namespace
 
 absl::StatusOr<scene::NewMaterial> from_proto(const v1::Material& message) {
-  if (message.has_textures()) return absl::UnimplementedError("material.textures: textures are not drawn yet");
   auto form = form_from_proto(message);
   if (!form.ok()) return form.status();
   const auto profile = from_proto(message.profile());
   if (!profile.ok()) return profile.status();
   const auto coat = coat_from_proto(message);
   if (!coat.ok()) return coat.status();
-  return scene::NewMaterial{*std::move(form), *profile, *coat};
+  auto textures = textures_from_proto(message.textures());
+  if (!textures.ok()) return textures.status();
+  return scene::NewMaterial{*std::move(form), *profile, *coat, *std::move(textures)};
 }
 
 absl::StatusOr<scene::MaterialPatch> from_proto(const v1::UpdateMaterialRequest& message) {
   const google::protobuf::FieldMask& mask = message.update_mask();
   constexpr std::string_view kForms[] = {"model", "preset", "coefficients", "diffuse_color", "volume"};
   absl::Status known =
-      check_mask(mask, {"model", "preset", "coefficients", "diffuse_color", "volume", "profile", "coat"});
+      check_mask(mask, {"model", "preset", "coefficients", "diffuse_color", "volume", "profile", "coat", "textures"});
   if (!known.ok()) return known;
   scene::MaterialPatch patch;
   if (std::any_of(std::begin(kForms), std::end(kForms), [&](std::string_view path) { return names(mask, path); })) {
@@ -228,6 +243,11 @@ absl::StatusOr<scene::MaterialPatch> from_proto(const v1::UpdateMaterialRequest&
     if (!coat.ok()) return coat.status();
     patch.coat = *coat;
   }
+  if (names(mask, "textures")) {
+    auto textures = textures_from_proto(message.material().textures());
+    if (!textures.ok()) return textures.status();
+    patch.textures = *std::move(textures);
+  }
   return patch;
 }
 
@@ -236,6 +256,7 @@ void to_proto(const scene::Material& material, v1::Material& message) {
   to_proto(material.form, message);
   message.set_profile(to_proto(material.coefficients.profile));
   if (material.coat.has_value()) message.mutable_coat()->set_roughness(material.coat->roughness);
+  if (material.textures.any()) to_proto(material.textures, *message.mutable_textures());
   to_proto(material.coefficients, *message.mutable_resolved());
   for (const std::string& warning : material.warnings) message.add_warnings(warning);
 }

@@ -10,7 +10,7 @@ namespace diaphane::service {
 
 absl::StatusOr<scene::NewMaterial> from_proto(const v1::Material& message);
 
-/// What the mask names: the model (as that, or as one of its forms), the profile or both.
+/// What the mask names: the model (as that, or as one of its forms), profile, coat, textures.
 absl::StatusOr<scene::MaterialPatch> from_proto(const v1::UpdateMaterialRequest& message);
 
 void to_proto(const scene::Material& material, v1::Material& message);

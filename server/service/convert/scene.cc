@@ -38,6 +38,7 @@ void to_proto(const scene::SnapshotPtr& scene, v1::Scene& message) {
   message.set_mesh_count(static_cast<uint32_t>(scene->meshes.size()));
   message.set_material_count(static_cast<uint32_t>(scene->materials.size()));
   message.set_light_count(static_cast<uint32_t>(scene->lights.size()));
+  message.set_texture_count(static_cast<uint32_t>(scene->textures.size()));
   message.set_has_environment(scene->environment != nullptr);
 }
 

@@ -39,16 +39,29 @@ std::vector<T> take(std::span<const char>& bytes, size_t count) {
   return values;
 }
 
+constexpr float kLargestTextureCoordinate = 1e6f;
+
+template <int kChannels, typename T>
+absl::Status check_values(const std::vector<T>& values, std::string_view field, float lowest, float highest) {
+  for (size_t i = 0; i < values.size(); ++i) {
+    for (int c = 0; c < kChannels; ++c) {
+      const float value = values[i][c];
+      // Written so that NaN fails too.
+      if (value >= lowest && value <= highest) continue;
+      return base::invalid_field(fmt::format("{}[{}][{}]", field, i, c), fmt::format("{:g}..{:g}", lowest, highest),
+                                 value);
+    }
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::StatusOr<PayloadSpec> from_proto(const v1::MeshHeader& message) {
   if (message.triangle_count() == 0) return base::invalid_field("triangle_count", "at least 1", 0);
-  for (const auto& [field, given] : {std::pair("has_texture_coordinates", message.has_texture_coordinates()),
-                                     std::pair("has_colors", message.has_colors())}) {
-    if (given) return base::field_error(absl::StatusCode::kUnimplemented, {field, "true", "false"});
-  }
-  return make_spec({message.vertex_count(), message.triangle_count(), message.has_normals()}, message.total_bytes(),
-                   message.sha256());
+  return make_spec({message.vertex_count(), message.triangle_count(), message.has_normals(),
+                    message.has_texture_coordinates(), message.has_colors()},
+                   message.total_bytes(), message.sha256());
 }
 
 absl::StatusOr<PayloadSpec> from_proto(const v1::PositionsHeader& message) {
@@ -59,9 +72,17 @@ absl::StatusOr<PayloadArrays> read_arrays(const PayloadSpec& spec, std::span<con
   PayloadArrays arrays;
   arrays.positions = take<glm::vec3>(bytes, spec.counts.vertex_count);
   if (spec.counts.has_normals) arrays.normals = take<glm::vec3>(bytes, spec.counts.vertex_count);
+  std::vector<glm::vec2>& coordinates = arrays.attributes.texture_coordinates;
+  std::vector<glm::vec3>& colors = arrays.attributes.colors;
+  if (spec.counts.has_texture_coordinates) coordinates = take<glm::vec2>(bytes, spec.counts.vertex_count);
+  if (spec.counts.has_colors) colors = take<glm::vec3>(bytes, spec.counts.vertex_count);
   arrays.triangles = take<glm::uvec3>(bytes, spec.counts.triangle_count);
   if (absl::Status finite = geometry::check_finite(arrays.positions, "positions"); !finite.ok()) return finite;
   if (absl::Status finite = geometry::check_finite(arrays.normals, "normals"); !finite.ok()) return finite;
+  absl::Status within =
+      check_values<2>(coordinates, "texture_coordinates", -kLargestTextureCoordinate, kLargestTextureCoordinate);
+  if (within.ok()) within = check_values<3>(colors, "colors", 0, 1);
+  if (!within.ok()) return within;
   return arrays;
 }
 

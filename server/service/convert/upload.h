@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "diaphane/v1/scene_service.pb.h"
+#include "geometry/surface_attributes.h"
 #include "glm/vec3.hpp"
 #include "scene/scene_store.h"
 
@@ -26,12 +27,14 @@ absl::StatusOr<PayloadSpec> from_proto(const v1::PositionsHeader& message);
 
 /// A payload's arrays.
 struct PayloadArrays {
-  std::vector<glm::vec3> positions;   ///< [vertex_count]
-  std::vector<glm::vec3> normals;     ///< [vertex_count] or empty
+  std::vector<glm::vec3> positions;  ///< [vertex_count]
+  std::vector<glm::vec3> normals;    ///< [vertex_count] or empty
+  geometry::SurfaceAttributes attributes;
   std::vector<glm::uvec3> triangles;  ///< [triangle_count]
 };
 
-/// `bytes` are `spec.total_bytes`. INVALID_ARGUMENT for a position or normal that is not finite.
+/// `bytes` are `spec.total_bytes`. INVALID_ARGUMENT for a position or normal that is not finite, or an
+/// attribute that is out of range.
 absl::StatusOr<PayloadArrays> read_arrays(const PayloadSpec& spec, std::span<const char> bytes);
 
 }  // namespace diaphane::service

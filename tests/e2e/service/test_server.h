@@ -41,6 +41,8 @@ inline google::rpc::ErrorInfo error_info(const grpc::Status& status) {
 struct TestMesh {
   std::vector<float> positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   std::vector<float> normals;
+  std::vector<float> texture_coordinates;
+  std::vector<float> colors;
   std::vector<uint32_t> triangles = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
 
   std::string payload() const {
@@ -50,6 +52,8 @@ struct TestMesh {
     };
     add(positions);
     add(normals);
+    add(texture_coordinates);
+    add(colors);
     add(triangles);
     return bytes;
   }
@@ -61,6 +65,8 @@ struct TestMesh {
     header.set_vertex_count(static_cast<uint32_t>(positions.size() / 3));
     header.set_triangle_count(static_cast<uint32_t>(triangles.size() / 3));
     header.set_has_normals(!normals.empty());
+    header.set_has_texture_coordinates(!texture_coordinates.empty());
+    header.set_has_colors(!colors.empty());
     header.set_total_bytes(payload().size());
     header.set_sha256(service::sha256(payload()));
     return header;

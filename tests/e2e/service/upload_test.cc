@@ -1,6 +1,7 @@
 // Meshes and positions that come in chunks.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <thread>
 
 #include "tests/e2e/service/test_server.h"
@@ -55,15 +56,37 @@ class UploadTest : public ServiceTest {
   std::string material_;
 };
 
-TEST_F(UploadTest, RefusesWhatNoMeshKeeps) {
-  const TestMesh mesh;
-  v1::MeshHeader header = mesh.header(scene_, material_);
-  header.set_has_colors(true);
+TEST_F(UploadTest, KeepsTextureCoordinatesAndColours) {
+  TestMesh mesh;
+  mesh.texture_coordinates = {0, 0, 1, 0, -2.5f, 1, 1e6f, 0};
+  mesh.colors = {0, 0, 0, 1, 1, 1, 0.5f, 0.25f, 1, 0, 1, 0};
   v1::MeshResponse response;
-  const grpc::Status status = upload(header, mesh.payload(), &response);
-  EXPECT_EQ(status.error_code(), static_cast<grpc::StatusCode>(absl::StatusCode::kUnimplemented));
-  EXPECT_EQ(error_info(status).metadata().at("field"), "has_colors");
+  const grpc::Status status = upload(mesh.header(scene_, material_), mesh.payload(), &response);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_TRUE(response.mesh().has_texture_coordinates());
+  EXPECT_TRUE(response.mesh().has_colors());
+  EXPECT_FALSE(response.mesh().has_normals());
+}
+
+TEST_F(UploadTest, RefusesAttributesOutOfRange) {
+  struct Case {
+    std::vector<float> texture_coordinates, colors;
+    std::string field;
+  };
+  for (const Case& c : {Case{{0, 0, 0, NAN, 0, 0, 0, 0}, {}, "texture_coordinates[1][1]"},
+                        Case{{0, 0, 0, 0, 0, 0, -2e6f, 0}, {}, "texture_coordinates[3][0]"},
+                        Case{{}, {0, 0, 0, 0, 0, 1.5f, 0, 0, 0, 0, 0, 0}, "colors[1][2]"},
+                        Case{{}, {0, 0, 0, 0, 0, 0, 0, -0.1f, 0, 0, 0, 0}, "colors[2][1]"}}) {
+    TestMesh mesh;
+    mesh.texture_coordinates = c.texture_coordinates;
+    mesh.colors = c.colors;
+    v1::MeshResponse response;
+    const grpc::Status status = upload(mesh.header(scene_, material_), mesh.payload(), &response);
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+    EXPECT_EQ(error_info(status).metadata().at("field"), c.field);
+  }
   EXPECT_EQ(get_scene(scene_).mesh_count(), 0u);
+  expect_nothing_reserved();
 }
 
 TEST_F(UploadTest, MakesAMeshOfAWholePayload) {

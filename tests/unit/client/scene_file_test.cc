@@ -135,6 +135,22 @@ TEST_F(SceneFileTest, RefusesMeshesOutsideItsFolder) {
   EXPECT_THAT(refusal(R"({"meshes": []})"), HasSubstr("meshes"));
 }
 
+TEST_F(SceneFileTest, NamesTheFilesOfTextures) {
+  const auto scene = read(R"({"meshes": [{"file": "x.ply", "material": "a"}],
+      "materials": [{"name": "a", "preset": "wax", "coat": {"roughness": 0.1},
+                     "textures": {"albedo": "a.png", "normal": "sub/n.png", "normal_scale": 2}}]})");
+  ASSERT_TRUE(scene.ok()) << scene.status();
+  const SceneFile::NamedMaterial& material = scene->materials[0];
+  EXPECT_EQ(material.albedo_file, folder_ / "a.png");
+  EXPECT_EQ(material.normal_file, folder_ / "sub/n.png");
+  EXPECT_TRUE(material.roughness_file.empty());
+  EXPECT_EQ(material.material.textures.normal_scale, 2);
+  EXPECT_FALSE(material.material.textures.albedo.has_value());
+  EXPECT_THAT(refusal(R"({"meshes": [{"file": "x.ply"}],
+      "materials": [{"name": "a", "preset": "wax", "textures": {"roughness": "../r.png"}}]})"),
+              HasSubstr("materials[0].textures.roughness: must be a relative path that stays in this folder"));
+}
+
 TEST_F(SceneFileTest, AcceptsAPathThatComesBackToItsFolder) {
   EXPECT_TRUE(read(R"({"meshes": [{"file": "sub/../x.ply"}]})").ok());
 }

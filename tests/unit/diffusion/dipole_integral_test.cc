@@ -198,6 +198,43 @@ TEST(DipoleIntegral, GivesTheClosedFormOnAPlane) {
   }
 }
 
+Mesh make_square(float side_mm, uint32_t cells) {
+  Mesh square;
+  for (uint32_t j = 0; j <= cells; ++j) {
+    for (uint32_t i = 0; i <= cells; ++i) {
+      square.positions_mm.emplace_back(side_mm * glm::vec2(i, j) / static_cast<float>(cells), 0);
+      square.normals.emplace_back(0, 0, 1);
+      if (i == cells || j == cells) continue;
+      const uint32_t a = j * (cells + 1) + i;
+      square.triangles.emplace_back(a, a + 1, a + cells + 2);
+      square.triangles.emplace_back(a, a + cells + 2, a + cells + 1);
+    }
+  }
+  return square;
+}
+
+TEST(DipoleIntegral, GivesTheClosedFormWhereTrianglesAreFarLargerThanLightGoes) {
+  const IrradianceAt even = [](const glm::vec3&, const glm::vec3&) { return glm::vec3(1); };
+  for (const char* name : {"marble", "skin1", "wholemilk"}) {
+    for (const optics::Profile profile : kProfiles) {
+      optics::Coefficients material = preset(name);
+      material.profile = profile;
+      const glm::vec3 total = optics::total_reflectance(material);
+      const glm::vec3 smooth = smooth_distance_mm(optics::make_profile(material));
+      for (const float spacings : {10.0f, 30.0f, 100.0f, 1000.0f, 1e5f}) {
+        const uint32_t cells = 64;
+        const Mesh plane = make_square(spacings * smooth.g * cells, cells);
+        DipoleIntegral integral(topology_of(plane));
+        const std::vector<glm::vec3> radiosity = radiosity_of(integral, plane, even, material);
+        const glm::vec3 centre = radiosity[(cells / 2) * (cells + 1) + cells / 2];
+        for (int c = 0; c < 3; ++c) {
+          EXPECT_NEAR(centre[c] / total[c], 1, 0.01) << name << ", " << spacings << " z, channel " << c;
+        }
+      }
+    }
+  }
+}
+
 TEST(DipoleIntegral, IsCloseToTheReferenceWithEveryProfile) {
   for (const optics::Profile profile : kProfiles) {
     for (const char* name : {"marble", "skin1"}) {

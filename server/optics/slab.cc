@@ -9,42 +9,25 @@
 namespace diaphane::optics {
 namespace {
 
-struct Shares {
-  double reflected, transmitted;
-};
+double extinction_mm(const Coefficients& material, int channel) {
+  return double{material.absorption_mm[channel]} + double{material.reduced_scattering_mm[channel]};
+}
 
-/// One channel of unit mean free path: σa = `absorbed`, σ's = 1 − `absorbed`, thickness in mean free paths.
-Shares diffusion_slab(double absorbed, double mismatch, double face_reflectance, double thickness) {
-  const double extrapolated = 2 * mismatch / 3;
-  const double length = thickness + 2 * extrapolated;
-  // Nothing changes below, and 0 has no closed form.
-  const double transport = std::max(std::sqrt(3 * absorbed), 1e-5 / length);
-  const double falls = std::exp(-transport * thickness), beam = std::exp(-thickness);
-  const double far = std::exp(-transport * length);
-  // ∫ e^(−z) e^(−σz) dz over the slab, and e^(−σd) ∫ e^(−z) e^(σz) dz.
-  const double towards = (1 - falls * beam) / (1 + transport);
-  const double away = std::abs(1 - transport) * thickness > 1e-6 ? (falls - beam) / (1 - transport) : thickness * beam;
-  const double scale = (1 - absorbed) * 0.5 * (1 + std::exp(-2 * transport * extrapolated)) / (1 - far * far);
-  const Shares once{scale * (towards - far * away), scale * (away - far * towards)};
-  const double turned = face_reflectance * beam;
-  return {once.reflected + turned * once.transmitted, once.transmitted + turned * once.reflected};
+TransportSlab channel_of(const Coefficients& material, int channel) {
+  return {material.reduced_scattering_mm[channel] / extinction_mm(material, channel), material.refractive_index};
 }
 
 }  // namespace
 
-SlabResponse slab_response(const Coefficients& material, double thickness_mm) {
-  const glm::vec3 total = total_reflectance(material);
-  const double mismatch = boundary_mismatch(material.refractive_index);
-  const double face_reflectance = 1 - double{fresnel_transmittance(material.refractive_index, 1)};
+Slab::Slab(const Coefficients& material)
+    : material_(material), channels_{channel_of(material, 0), channel_of(material, 1), channel_of(material, 2)} {}
+
+SlabResponse Slab::response(double thickness_mm) const {
   SlabResponse slab;
   for (int c = 0; c < 3; ++c) {
-    const double absorption = material.absorption_mm[c];
-    const double extinction = absorption + double{material.reduced_scattering_mm[c]};
-    const double absorbed = absorption / extinction, transport = std::sqrt(3 * absorbed);
-    const Shares shares = diffusion_slab(absorbed, mismatch, face_reflectance, thickness_mm * extinction);
-    const double thick = (1 - absorbed) * 0.5 * (1 + std::exp(-4.0 / 3.0 * mismatch * transport)) / (1 + transport);
-    slab.reflected[c] = shares.reflected * total[c] / thick;
-    slab.transmitted[c] = shares.transmitted * total[c] / thick;
+    const glm::dvec2 shares = channels_[static_cast<size_t>(c)].at(thickness_mm * extinction_mm(material_, c));
+    slab.reflected[c] = shares.x;
+    slab.transmitted[c] = shares.y;
   }
   return slab;
 }
@@ -68,10 +51,10 @@ SlabResponse integral_slab_response(const Coefficients& material, double thickne
   return slab;
 }
 
-SlabGain slab_gain(const Coefficients& material, double thickness_mm) {
+SlabGain Slab::gain(double thickness_mm) const {
   // In the mean of both faces and in half their difference; for each the slab's response over the integral's.
-  const SlabResponse right = slab_response(material, thickness_mm);
-  const SlabResponse said = integral_slab_response(material, thickness_mm);
+  const SlabResponse right = response(thickness_mm);
+  const SlabResponse said = integral_slab_response(material_, thickness_mm);
   SlabGain gain;
   for (int c = 0; c < 3; ++c) {
     const double sum = (right.reflected[c] + right.transmitted[c]) / (said.reflected[c] + said.transmitted[c]);

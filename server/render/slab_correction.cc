@@ -27,13 +27,15 @@ SlabGains::SlabGains(const optics::Coefficients& material) {
   first_mm_ = kThinnest / std::max({extinction.x, extinction.y, extinction.z});
   last_mm_ = kThickest / std::min({extinction.x, extinction.y, extinction.z});
   const auto count = static_cast<size_t>(std::ceil(kSteps * std::log(last_mm_ / first_mm_))) + 2;
+  const optics::Slab slab(material);
+  half_space_ = slab.gain(1e6 * double{last_mm_}).own;
   for (size_t i = 0; i < count; ++i) {
-    gains_.push_back(optics::slab_gain(material, double{first_mm_} * std::exp(static_cast<double>(i) / kSteps)));
+    gains_.push_back(slab.gain(double{first_mm_} * std::exp(static_cast<double>(i) / kSteps)));
   }
 }
 
 optics::SlabGain SlabGains::at(float thickness_mm) const {
-  if (!(thickness_mm < last_mm_)) return {};
+  if (!(thickness_mm < last_mm_)) return {half_space_, glm::vec3(0)};
   const float at = kSteps * std::log(std::max(thickness_mm, first_mm_) / first_mm_);
   const size_t step = std::min(static_cast<size_t>(at), gains_.size() - 2);
   const float share = at - static_cast<float>(step);
@@ -47,7 +49,7 @@ glm::vec3 slab_corrected(const SlabGains& gains, std::span<const OppositePoint> 
   for (size_t i = 0; i < opposites.size(); ++i) {
     const optics::SlabGain gain = gains.at(opposites[i].thickness_mm);
     const float share = glm::smoothstep(kApart, kParallel, opposites[i].facing);
-    sum += here + share * ((gain.own - 1.0f) * here + gain.opposite * there[i]);
+    sum += glm::mix(gains.half_space(), gain.own, share) * here + share * gain.opposite * there[i];
   }
   return glm::max(sum / static_cast<float>(opposites.size()), glm::vec3(0));
 }

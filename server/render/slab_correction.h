@@ -10,20 +10,24 @@
 
 namespace diaphane::render {
 
-/// optics::slab_gain() of one material, by thickness. A table, steps of a hundredth in ln d. Thread-safe once made.
+/// optics::Slab::gain() of one material, by thickness. A table, steps of a hundredth in ln d. Thread-safe once made.
 class SlabGains {
  public:
   explicit SlabGains(const optics::Coefficients& material);
-  /// 1 and 0 for an infinite thickness.
+  /// The half-space's for an infinite thickness.
   optics::SlabGain at(float thickness_mm) const;
+  /// Of an infinite thickness, times B here alone.
+  const glm::vec3& half_space() const { return half_space_; }
 
  private:
   float first_mm_, last_mm_;
+  glm::vec3 half_space_;
   std::vector<optics::SlabGain> gains_;
 };
 
 /// The mean over a point's `opposites` of own·here + opposite·there, not below 0; `there` has as many radiosities.
-/// Less is corrected the less parallel the walls are: where they are at 80° and more to each other, nothing.
+/// The less parallel the walls are, the more it is the half-space's: all of it where they are at 80° and more to each
+/// other.
 glm::vec3 slab_corrected(const SlabGains& gains, std::span<const OppositePoint> opposites, const glm::vec3& here,
                          std::span<const glm::vec3> there);
 

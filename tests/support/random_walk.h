@@ -1,4 +1,4 @@
-// Light in a slab by random walk: the judge of diffusion theory where bodies are thin.
+// Light in a slab by random walk: the judge of slabs.
 #pragma once
 
 namespace diaphane::testing {

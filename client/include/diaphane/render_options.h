@@ -84,8 +84,8 @@ struct RenderSettings {
   float exposure_ev = 0;       ///< stops, -32..32; multiplies radiance by 2^exposure_ev before sRGB, never in EXR
   bool auto_exposure = false;  ///< finds the exposure by the frame, and adds exposure_ev
   ToneMapping tone_mapping = ToneMapping::kNone;
-  uint32_t samples = 1;           ///< a pixel, 1..64
-  std::optional<Rgb> background;  ///< linear, each 0..1e6, where no surface is; not given: nothing, alpha 0
+  uint32_t samples = 1;                 ///< a pixel, 1..64
+  std::optional<Rgb> background;        ///< linear, each 0..1e6, where no surface is; not given: nothing, alpha 0
   bool environment_background = false;  ///< the scene's environment there instead, which it must have
 };
 

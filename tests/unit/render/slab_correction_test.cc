@@ -60,16 +60,18 @@ TEST(ThicknessField, IsInfiniteWhereNothingLiesBehind) {
   field.update(disc.triangles, {.positions_mm = disc.positions_mm, .normals = disc.normals});
   const OppositePoint opposite = opposite_of(field, disc.positions_mm[0], disc.normals[0]);
   EXPECT_EQ(opposite.thickness_mm, std::numeric_limits<float>::infinity());
-  const optics::SlabGain gain = SlabGains(optics::find_preset("marble")->coefficients).at(opposite.thickness_mm);
-  EXPECT_EQ(gain.own, glm::vec3(1));
+  const SlabGains gains(optics::find_preset("marble")->coefficients);
+  const optics::SlabGain gain = gains.at(opposite.thickness_mm);
+  EXPECT_EQ(gain.own, gains.half_space());
   EXPECT_EQ(gain.opposite, glm::vec3(0));
 }
 
 TEST(SlabGains, AreThoseOfTheFormula) {
   const optics::Coefficients material = optics::find_preset("skin1")->coefficients;
   const SlabGains gains(material);
+  const optics::Slab slab(material);
   for (const float thickness : {0.05f, 0.4f, 1.1f, 7.0f, 90.0f}) {
-    const optics::SlabGain exact = optics::slab_gain(material, thickness), looked_up = gains.at(thickness);
+    const optics::SlabGain exact = slab.gain(thickness), looked_up = gains.at(thickness);
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(looked_up.own[c], exact.own[c], 1e-3f) << thickness;
       EXPECT_NEAR(looked_up.opposite[c], exact.opposite[c], 1e-3f) << thickness;
@@ -81,8 +83,8 @@ TEST(SlabCorrection, GivesOnAMeshWhatARandomWalkDoesFromHalfAMeanFreePathUp) {
   for (const optics::Profile profile :
        {optics::Profile::kDipole, optics::Profile::kBetterDipole, optics::Profile::kNormalizedDiffusion}) {
     // Of one mean free path a channel, so that one slab tells three albedos.
-    const optics::Coefficients material{.absorption_mm = {0.001f, 0.004f, 0.01f},
-                                        .reduced_scattering_mm = {0.999f, 0.996f, 0.99f},
+    const optics::Coefficients material{.absorption_mm = {0.001f, 0.01f, 0.32f},
+                                        .reduced_scattering_mm = {0.999f, 0.99f, 0.68f},
                                         .refractive_index = 1.3f,
                                         .profile = profile};
     for (const float thickness : {0.5f, 1.0f, 3.0f}) {
@@ -93,7 +95,7 @@ TEST(SlabCorrection, GivesOnAMeshWhatARandomWalkDoesFromHalfAMeanFreePathUp) {
         const double right = walked.reflected + walked.transmitted;
         EXPECT_NEAR((slab.corrected.reflected[c] + slab.corrected.transmitted[c]) / right, 1, 0.05)
             << "profile " << static_cast<int>(profile) << " thickness " << thickness << " channel " << c;
-        if (thickness <= 1) {
+        if (thickness <= 1 && c < 2) {
           EXPECT_GT(slab.integral.reflected[c] + slab.integral.transmitted[c], 1.5 * right) << thickness;
         }
       }

@@ -228,6 +228,9 @@ void add_render_options(CLI::App& command, RenderArguments& arguments) {
   add_parsed(command, "--environment-intensity", "X", "Multiplies it (default: 1)", parse_number,
              arguments.environment_intensity)
       ->needs(environment);
+  command
+      .add_flag("--environment-occlusion", arguments.environment_occlusion, "Bodies hide parts of it from each other")
+      ->needs(environment);
   for (const char* flag :
        {"--material", "--absorption", "--scattering", "--diffuse-color", "--mean-free-path", "--ior", "--profile",
         "--coat", "--mm-per-unit", "--height-mm", "--point-light", "--directional-light", "--spot-light"}) {

@@ -55,6 +55,7 @@ struct RenderArguments {
   std::string environment_file;
   std::optional<float> environment_rotation_deg;
   std::optional<float> environment_intensity;
+  bool environment_occlusion = false;
 };
 
 /// Declares the options on `command`; parsing fills `arguments`, which must live as long. What cannot be parsed, is

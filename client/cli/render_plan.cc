@@ -199,6 +199,7 @@ absl::StatusOr<RenderPlan> plan_render(const RenderArguments& arguments) {
     if (!map.ok()) return with_exit_code(map.status(), kExitFile);
     plan.environment = *std::move(map);
     if (arguments.environment_rotation_deg) plan.environment_options.rotation_deg = *arguments.environment_rotation_deg;
+    plan.environment_options.occlusion = arguments.environment_occlusion;
     if (arguments.environment_intensity) plan.environment_options.intensity = *arguments.environment_intensity;
   }
   if (plan.lights.empty() && !plan.environment)

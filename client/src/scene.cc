@@ -111,7 +111,9 @@ absl::StatusOr<uint64_t> Scene::update_environment(const EnvironmentOptions& opt
   request.mutable_environment()->set_rotation_deg(options.rotation_deg);
   request.mutable_environment()->set_intensity(options.intensity);
   request.mutable_update_mask()->add_paths("rotation_deg");
+  request.mutable_environment()->set_occlusion(options.occlusion);
   request.mutable_update_mask()->add_paths("intensity");
+  request.mutable_update_mask()->add_paths("occlusion");
   request.set_request_id(new_request_id());
   return revision_of(connection_->call(connection_->scene_service(), &SceneStub::UpdateEnvironment, request));
 }

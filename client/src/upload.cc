@@ -106,6 +106,7 @@ absl::StatusOr<uint64_t> upload_environment(const Connection& connection, const 
   environment.set_height_px(map.height_px);
   environment.set_rotation_deg(options.rotation_deg);
   environment.set_intensity(options.intensity);
+  environment.set_occlusion(options.occlusion);
   header.set_total_bytes(payload.total_bytes());
   header.set_sha256(payload.sha256());
   header.set_request_id(new_request_id());

@@ -9,7 +9,8 @@ namespace diaphane::render {
 
 Ambient ambient_of(const scene::SceneSnapshot& scene) {
   if (scene.environment == nullptr) return {};
-  return {scene.environment->light, scene.environment->rotation_deg, scene.environment->intensity};
+  return {scene.environment->light, scene.environment->rotation_deg, scene.environment->intensity,
+          scene.environment->occlusion};
 }
 
 glm::vec3 AmbientIrradiance::at(const glm::vec3& normal) const {

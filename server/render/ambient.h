@@ -13,6 +13,7 @@ struct Ambient {
   std::shared_ptr<const optics::EnvironmentLight> light;  ///< null: none
   float rotation_deg = 0;
   float intensity = 1;
+  bool occluded = false;  ///< bodies hide it
 
   bool operator==(const Ambient&) const = default;
 };

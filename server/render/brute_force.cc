@@ -7,6 +7,7 @@
 
 #include "diffusion/reference.h"
 #include "glm/geometric.hpp"
+#include "render/ambient_occlusion.h"
 #include "render/lights.h"
 #include "render/slab_correction.h"
 #include "render/thickness.h"
@@ -16,10 +17,23 @@ namespace diaphane::render {
 
 namespace {
 
+/// Directions from which light is looked for around a point.
+constexpr uint32_t kOcclusionRays = 192;
+
 diffusion::IrradianceAt irradiance_on(const BruteForceBody& body) {
   const AmbientIrradiance around = ambient_irradiance(body.ambient, body.material.refractive_index);
-  return [&body, around](const glm::vec3& position, const glm::vec3& normal) {
+  AmbientDirections directions;
+  if (body.occluders != nullptr && body.ambient.light != nullptr) {
+    directions = ambient_directions(body.ambient, body.material.refractive_index, kOcclusionRays);
+  }
+  return [&body, around, directions = std::move(directions)](const glm::vec3& position, const glm::vec3& normal) {
     glm::vec3 e = around.at(normal);
+    if (!directions.towards.empty()) {
+      e *= directions.share(normal, [&](size_t k) {
+        const LightStorage from{.position_mm = glm::vec4(directions.towards[k], 0), .power = glm::vec4(0, 0, 0, 1)};
+        return body.occluders->visibility_at(from, position, normal);
+      });
+    }
     for (const LightStorage& light : body.lights) {
       const glm::vec3 entering = entering_irradiance(light, position, normal, body.material.refractive_index);
       if (entering == glm::vec3(0)) continue;

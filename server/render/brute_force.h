@@ -22,7 +22,8 @@ struct BruteForceBody {
   const optics::Coefficients& material;
   std::span<const LightStorage> lights;
   const Ambient& ambient;
-  const ShadowScene* shadows;  ///< null: unshadowed
+  const ShadowScene* shadows;    ///< null: unshadowed
+  const ShadowScene* occluders;  ///< null: nothing hides what is around
   bool slab_correction = false;
 };
 

@@ -82,7 +82,8 @@ void place_vertices(const geometry::PlacedShape& shape, size_t first, size_t cou
 }
 
 /// As AmbientIrradiance::at().
-void add_ambient(const AmbientIrradiance& ambient, const SurfacePoints& points, size_t count, EnteringLight& sum) {
+void add_ambient(const AmbientIrradiance& ambient, const SurfacePoints& points, size_t first, size_t count,
+                 const Receivers& receivers, EnteringLight& sum) {
   for (size_t i = 0; i < count; i += 4) {
     const Four x = load4(points.normal_x + i), y = load4(points.normal_y + i), z = load4(points.normal_z + i);
     Four polynomials[optics::kHarmonics];
@@ -91,6 +92,9 @@ void add_ambient(const AmbientIrradiance& ambient, const SurfacePoints& points, 
     for (int c = 0; c < 3; ++c) {
       Four e{};
       for (size_t k = 0; k < optics::kHarmonics; ++k) e += ambient.harmonics[k][c] * polynomials[k];
+      if (receivers.open != nullptr) {
+        e *= load4(receivers.open + static_cast<size_t>(c) * receivers.irradiance.size() + first + i);
+      }
       diffusion::store4(sum.channel[c] + i, load4(sum.channel[c] + i) + diffusion::max4(e, Four{}));
     }
   }
@@ -100,7 +104,7 @@ void add_ambient(const AmbientIrradiance& ambient, const SurfacePoints& points, 
 void light_points(std::span<const LightStorage> lights, const AmbientIrradiance* ambient, float refractive_index,
                   const SurfacePoints& points, size_t first, size_t count, const Receivers& receivers) {
   EnteringLight sum{};
-  if (ambient != nullptr) add_ambient(*ambient, points, count, sum);
+  if (ambient != nullptr) add_ambient(*ambient, points, first, count, receivers, sum);
   for (size_t light = 0; light < lights.size(); ++light) {
     const float* seen =
         receivers.seen == nullptr ? nullptr : receivers.seen + light * receivers.irradiance.size() + first;
@@ -169,14 +173,16 @@ void IrradianceStage::cast_shadows(const diffusion::SurfaceTopology& topology, c
 
 void IrradianceStage::run(const diffusion::SurfaceTopology& topology, const geometry::PlacedShape& shape,
                           std::span<const LightStorage> lights, const Ambient& ambient, float refractive_index,
-                          ShadowScene* shadows) {
+                          ShadowScene* shadows, const AmbientOcclusion* occlusion) {
   irradiance_.of_triangle.resize(topology.triangles.size());
   irradiance_.of_vertex.resize(shape.positions_mm.size());
   if (shadows != nullptr) cast_shadows(topology, shape, lights, *shadows);
   const AmbientIrradiance around = ambient_irradiance(ambient, refractive_index);
   const LitSurface surface{topology, shape, lights, ambient.light == nullptr ? nullptr : &around, refractive_index};
-  const Receivers triangles{irradiance_.of_triangle, shadows == nullptr ? nullptr : of_triangle_.data()};
-  const Receivers vertices{irradiance_.of_vertex, shadows == nullptr ? nullptr : of_vertex_.data()};
+  const Receivers triangles{irradiance_.of_triangle, shadows == nullptr ? nullptr : of_triangle_.data(),
+                            occlusion == nullptr ? nullptr : occlusion->of_triangles()};
+  const Receivers vertices{irradiance_.of_vertex, shadows == nullptr ? nullptr : of_vertex_.data(),
+                           occlusion == nullptr ? nullptr : occlusion->of_vertices()};
   const size_t triangle_count = triangles.irradiance.size(), vertex_count = vertices.irradiance.size();
   const size_t triangle_chunks = (triangle_count + kChunk - 1) / kChunk;
   const size_t vertex_chunks = (vertex_count + kChunk - 1) / kChunk;

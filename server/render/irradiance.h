@@ -7,6 +7,7 @@
 #include "diffusion/surface_topology.h"
 #include "geometry/shape.h"
 #include "render/ambient.h"
+#include "render/ambient_occlusion.h"
 #include "render/shadow.h"
 #include "render/uniforms.h"
 
@@ -32,14 +33,17 @@ struct LitSurface {
 struct Receivers {
   std::span<glm::vec3> irradiance;
   const float* seen;  ///< where not null, a row of that many values for each light
+  const float* open;  ///< where not null, three such rows (RGB): the share of what is around
 };
 
 /// Computes E natively, spread over all cores; keeps its memory from call to call. One thread calls.
 class IrradianceStage {
  public:
   /// `shadows` null: every light is seen everywhere. A vertex sees of a light what its triangles see, on average.
+  /// `occlusion` null: so is what is around; else it has weighed the same mesh.
   void run(const diffusion::SurfaceTopology& topology, const geometry::PlacedShape& shape,
-           std::span<const LightStorage> lights, const Ambient& ambient, float refractive_index, ShadowScene* shadows);
+           std::span<const LightStorage> lights, const Ambient& ambient, float refractive_index, ShadowScene* shadows,
+           const AmbientOcclusion* occlusion = nullptr);
 
   const SurfaceIrradiance& result() const { return irradiance_; }
 

@@ -39,7 +39,7 @@ absl::Status ScenePainter::draw_reference_tile(Job& job, const Tile& tile, uint8
   }
   read_surface(job, tile);
   const bool shadowed = casts_shadows(job.request.settings);
-  if (shadowed) shadows_.prepare_rays();
+  if (shadowed || job.ambient.occluded) shadows_.prepare_rays();
   const auto shown = static_cast<size_t>(std::count_if(channels.position_mm.begin(), channels.position_mm.end(),
                                                        [](const glm::vec4& p) { return p.w != 0; }));
   const double all_pixels = static_cast<double>(job.request.width_px) * job.request.height_px * job.passes;
@@ -49,9 +49,14 @@ absl::Status ScenePainter::draw_reference_tile(Job& job, const Tile& tile, uint8
   for (size_t i = 0; i < job.meshes.size(); ++i) {
     const DrawnMesh& drawn = job.meshes[i];
     const ShownPoints points = points_of(channels, i);
-    const BruteForceBody body{
-        *drawn.mesh->topology,          drawn.state->placed.shape(),         drawn.material, job.lights, job.ambient,
-        shadowed ? &shadows_ : nullptr, job.request.settings.slab_correction};
+    const BruteForceBody body{*drawn.mesh->topology,
+                              drawn.state->placed.shape(),
+                              drawn.material,
+                              job.lights,
+                              job.ambient,
+                              shadowed ? &shadows_ : nullptr,
+                              job.ambient.occluded ? &shadows_ : nullptr,
+                              job.request.settings.slab_correction};
     std::function<void(double)> progress;
     if (job.request.progress) {
       progress = [&](double share) {

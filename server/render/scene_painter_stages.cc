@@ -127,10 +127,10 @@ void ScenePainter::update_atlas(const DrawnMesh& drawn, Job& job) {
 void ScenePainter::update_integral(const DrawnMesh& drawn, bool shadowed, Job& job) {
   MeshState& state = *drawn.state;
   RefinedMesh& refined = state.refined;
-  state.light.update(
-      {refined, job.lights, job.ambient, drawn.material, job.request.settings.quality, shadowed ? &shadows_ : nullptr,
-       shadowed ? shadows_generation_ : 0, job.request.settings.slab_correction},
-      job.clock);
+  state.light.update({refined, job.lights, job.ambient, drawn.material, job.request.settings.quality,
+                      shadowed ? &shadows_ : nullptr, job.ambient.occluded ? &shadows_ : nullptr,
+                      shadowed || job.ambient.occluded ? shadows_generation_ : 0, job.request.settings.slab_correction},
+                     job.clock);
   state.gpu.update(refined.topology(), refined.shape(), refined.generation(), job.clock);
   update_surface(drawn, &refined, job);
   state.gpu.update_radiosity(state.light.radiosity(), state.light.generation(), job.clock);
@@ -148,9 +148,11 @@ absl::Status ScenePainter::update_lit(const DrawnMesh& drawn, bool shadowed, Job
   // Lambert's E is without Fresnel.
   const float refractive_index =
       job.request.settings.technique == Technique::kLambert ? 1.0f : drawn.material.refractive_index;
-  state.vertex_light.update({*state.lit.topology(), state.lit.shape(), state.lit.generation(), job.lights, job.ambient,
-                             refractive_index, shadowed ? &shadows_ : nullptr, shadowed ? shadows_generation_ : 0},
-                            job.clock);
+  state.vertex_light.update(
+      {*state.lit.topology(), state.lit.shape(), state.lit.generation(), job.lights, job.ambient, refractive_index,
+       shadowed ? &shadows_ : nullptr, job.ambient.occluded ? &shadows_ : nullptr,
+       shadowed || job.ambient.occluded ? shadows_generation_ : 0},
+      job.clock);
   state.gpu.update(state.lit.topology(), state.lit.shape(), state.lit.generation(), job.clock);
   update_surface(drawn, &state.lit, job);
   state.gpu.update_irradiance(state.vertex_light.irradiance(), &state.vertex_light, state.vertex_light.generation(),
@@ -186,7 +188,7 @@ absl::Status ScenePainter::update(Job& job) {
   if (settings.technique == Technique::kIntegral) {
     if (absl::Status refined = refine(job); !refined.ok()) return refined;
   }
-  if (shadowed) update_shadows(job);
+  if (shadowed || job.ambient.occluded) update_shadows(job);
   shading_.bind(std::span<const LightStorage>(job.lights));
   for (const DrawnMesh& drawn : job.meshes) {
     if (absl::Status status = check_cancelled(job); !status.ok()) return status;

@@ -9,6 +9,7 @@ void SurfaceLight::update(const Inputs& inputs, StageClock& clock) {
     radiosity_.assign(surface->mesh->vertex_count, glm::vec3(0));
     refit_reads_.forget();
     light_reads_.forget();
+    occlusion_reads_.forget();
     flux_reads_.forget();
     material_reads_.forget();
     gather_reads_.forget();
@@ -35,8 +36,16 @@ void SurfaceLight::update(const Inputs& inputs, StageClock& clock) {
   std::vector<LightStorage> lights(inputs.lights.begin(), inputs.lights.end());
   const bool relit =
       light_reads_.renew({placed, std::move(lights), inputs.ambient, refractive_index, inputs.shadows_generation});
+  const bool occluded = inputs.occluders != nullptr && inputs.ambient.light != nullptr;
+  const std::vector<glm::uvec3>& triangles = integral_->topology().triangles;
+  if (occluded) {
+    stage("occlusion", occlusion_reads_.renew({placed, inputs.shadows_generation}),
+          [&] { occlusion_.look(triangles, shape, *inputs.occluders); });
+  }
   stage("irradiance", relit, [&] {
-    irradiance_.run(integral_->topology(), shape, inputs.lights, inputs.ambient, refractive_index, inputs.shadows);
+    if (occluded) occlusion_.weigh(triangles, shape, inputs.ambient, refractive_index);
+    irradiance_.run(integral_->topology(), shape, inputs.lights, inputs.ambient, refractive_index, inputs.shadows,
+                    occluded ? &occlusion_ : nullptr);
     ++irradiance_generation_;
   });
   stage("flux", flux_reads_.renew({placed, irradiance_generation_}), [&] {
@@ -81,7 +90,7 @@ void SurfaceLight::correct_slabs_of(const Inputs& inputs, StageClock& clock) {
 
 size_t SurfaceLight::bytes() const {
   const size_t slabs = thickness_ == nullptr ? 0 : thickness_->bytes() + opposites_.size() * sizeof(OppositePoint);
-  return (integral_ == nullptr ? 0 : integral_->bytes()) + slabs;
+  return (integral_ == nullptr ? 0 : integral_->bytes()) + slabs + occlusion_.bytes();
 }
 
 }  // namespace diaphane::render

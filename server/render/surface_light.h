@@ -17,8 +17,9 @@
 
 namespace diaphane::render {
 
-/// Light on one mesh. Stages: normals, refit, irradiance, flux, gather, slab (where asked for); each sleeps while what
-/// it reads is the same. One thread calls; work is spread over all cores. The same bytes on any number of threads.
+/// Light on one mesh. Stages: normals, refit, occlusion (where asked for), irradiance, flux, gather, slab (where asked
+/// for); each sleeps while what it reads is the same. One thread calls; work is spread over all cores. The same bytes
+/// on any number of threads.
 class SurfaceLight {
  public:
   struct Inputs {
@@ -28,7 +29,8 @@ class SurfaceLight {
     const optics::Coefficients& material;
     diffusion::Quality quality;
     ShadowScene* shadows;         ///< null: unshadowed
-    uint64_t shadows_generation;  ///< of what casts them; 0 without
+    ShadowScene* occluders;       ///< null: nothing hides what is around
+    uint64_t shadows_generation;  ///< of what casts either; 0 without
     bool slab_correction = false;
   };
 
@@ -48,6 +50,7 @@ class SurfaceLight {
  private:
   std::unique_ptr<diffusion::DipoleIntegral> integral_;
   IrradianceStage irradiance_;
+  AmbientOcclusion occlusion_;
   std::vector<glm::vec3> radiosity_;
   void correct_slabs_of(const Inputs& inputs, StageClock& clock);
 
@@ -64,7 +67,8 @@ class SurfaceLight {
   Memo<uint64_t> refit_reads_;  // shape
   // shape, lights, what is around, η, shadows
   Memo<std::tuple<uint64_t, std::vector<LightStorage>, Ambient, float, uint64_t>> light_reads_;
-  Memo<std::tuple<uint64_t, uint64_t>> flux_reads_;  // shape, irradiance
+  Memo<std::tuple<uint64_t, uint64_t>> flux_reads_;       // shape, irradiance
+  Memo<std::tuple<uint64_t, uint64_t>> occlusion_reads_;  // shape, occluders
   Memo<optics::Coefficients> material_reads_;
   Memo<uint64_t> opposite_reads_;  // shape
   Memo<optics::Coefficients> gain_reads_;

@@ -52,6 +52,17 @@ float VertexLight::add(const LightStorage& light, const Inputs& inputs, std::spa
   return unshadowed_w > 0 ? static_cast<float>(shadowed_w / unshadowed_w) : 1.0f;
 }
 
+void VertexLight::occlude(const Inputs& inputs) {
+  const std::vector<glm::uvec3>& triangles = inputs.topology.triangles;
+  occlusion_.look(triangles, inputs.shape, *inputs.occluders);
+  occlusion_.weigh(triangles, inputs.shape, inputs.ambient, inputs.refractive_index);
+  const size_t count = irradiance_.size();
+  const float* shares = occlusion_.of_vertices();
+  for (size_t v = 0; v < count; ++v) {
+    irradiance_[v] *= glm::vec3(shares[v], shares[count + v], shares[2 * count + v]);
+  }
+}
+
 void VertexLight::update(const Inputs& inputs, StageClock& clock) {
   std::vector<LightStorage> lights(inputs.lights.begin(), inputs.lights.end());
   if (!reads_.renew({inputs.generation, lights, inputs.ambient, inputs.refractive_index, inputs.shadows_generation})) {
@@ -66,6 +77,7 @@ void VertexLight::update(const Inputs& inputs, StageClock& clock) {
       const AmbientIrradiance around = ambient_irradiance(inputs.ambient, inputs.refractive_index);
       tbb::parallel_for(size_t{0}, irradiance_.size(),
                         [&](size_t v) { irradiance_[v] = around.at(inputs.shape.normals[v]); });
+      if (inputs.occluders != nullptr) occlude(inputs);
     }
     const std::vector<float> areas_mm2 = vertex_areas(inputs.topology, inputs.shape);
     for (LightStorage& light : lights_) light.shape.z = add(light, inputs, areas_mm2);

@@ -8,6 +8,7 @@
 #include "geometry/shape.h"
 #include "geometry/topology.h"
 #include "render/ambient.h"
+#include "render/ambient_occlusion.h"
 #include "render/memo.h"
 #include "render/shadow.h"
 #include "render/stage_clock.h"
@@ -28,6 +29,7 @@ class VertexLight {
     const Ambient& ambient;
     float refractive_index;  ///< 1: E without Fresnel
     ShadowScene* shadows;    ///< null: unshadowed
+    ShadowScene* occluders;  ///< null: nothing hides what is around
     uint64_t shadows_generation;
   };
 
@@ -39,12 +41,15 @@ class VertexLight {
   std::span<const LightStorage> lights() const { return lights_; }
   /// Above 0, and grows whenever irradiance or lights change.
   uint64_t generation() const { return generation_; }
-  size_t bytes() const { return irradiance_.capacity() * sizeof(glm::vec3); }
+  size_t bytes() const { return irradiance_.capacity() * sizeof(glm::vec3) + occlusion_.bytes(); }
 
  private:
+  /// Takes from what is around what bodies hide.
+  void occlude(const Inputs& inputs);
   /// Adds what one light gives, and returns the share of its power that shadows leave.
   float add(const LightStorage& light, const Inputs& inputs, std::span<const float> areas_mm2);
 
+  AmbientOcclusion occlusion_;
   std::vector<glm::vec3> irradiance_;
   std::vector<LightStorage> lights_;
   // shape, lights, what is around, η, shadows

@@ -55,6 +55,7 @@ struct LightPatch {
 struct EnvironmentPatch {
   std::optional<float> rotation_deg;
   std::optional<float> intensity;
+  std::optional<bool> occlusion;
 };
 
 struct MeshPatch {

@@ -49,6 +49,7 @@ absl::StatusOr<Changed<EnvironmentPtr>> SceneStore::update_environment(const Ref
     Environment updated = *draft.environment;
     if (patch.rotation_deg.has_value()) updated.rotation_deg = *patch.rotation_deg;
     if (patch.intensity.has_value()) updated.intensity = *patch.intensity;
+    if (patch.occlusion.has_value()) updated.occlusion = *patch.occlusion;
     draft.environment = std::make_shared<const Environment>(std::move(updated));
     changed = {draft.environment, draft.revision};
     return absl::OkStatus();

@@ -93,6 +93,7 @@ struct Environment {
   std::shared_ptr<const optics::EnvironmentLight> light;  ///< what it is to bodies
   float rotation_deg = 0;                                 ///< about +y, counter-clockwise seen from above
   float intensity = 1;                                    ///< multiplies both
+  bool occlusion = false;                                 ///< bodies hide what of it is no lamp
 };
 
 struct Mesh {

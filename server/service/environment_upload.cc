@@ -24,7 +24,8 @@ absl::Status EnvironmentUpload::apply(const Payload& payload, v1::EnvironmentRes
                                  std::make_shared<const optics::LatLongMap>(*std::move(map)),
                                  std::move(light),
                                  spec_.rotation_deg,
-                                 spec_.intensity};
+                                 spec_.intensity,
+                                 spec_.occlusion};
   const auto changed = store_.set_environment({"parent", parent_}, std::move(environment), std::move(reservation_));
   if (!changed.ok()) return changed.status();
   to_proto(*changed, response);

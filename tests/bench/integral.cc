@@ -72,20 +72,21 @@ void render(render::FrameRenderer& renderer, const render::FrameRequest& request
 }
 
 /// What a row has beside the plain frame: nothing (-), the slab correction, a profile, an environment, a coat in the
-/// light or in an environment, an albedo, or that and a coat with normal and roughness maps.
-const std::vector<std::string> kExtras = {"-",           "slab", "better-dipole",    "normalized-diffusion",
-                                          "environment", "coat", "coat+environment", "albedo",
-                                          "coat+maps"};
+/// light or in an environment, an albedo, that and a coat with normal and roughness maps, or an
+/// environment that bodies hide.
+const std::vector<std::string> kExtras = {
+    "-",      "slab",      "better-dipole",       "normalized-diffusion", "environment", "coat", "coat+environment",
+    "albedo", "coat+maps", "occluded environment"};
 
 /// A sky without lamps, so that the row tells the harmonics and the map alone.
-std::shared_ptr<const scene::Environment> sky() {
+std::shared_ptr<const scene::Environment> sky(bool occluded) {
   optics::LatLongMap map{512, 256, {}};
   for (uint32_t y = 0; y < map.height_px; ++y) {
     for (uint32_t x = 0; x < map.width_px; ++x) map.radiance.push_back(0.5f + 0.2f * map.direction(x, y));
   }
   auto light = std::make_shared<const optics::EnvironmentLight>(optics::EnvironmentLight{optics::project(map), {}});
-  return std::make_shared<const scene::Environment>(
-      scene::Environment{"environment", std::make_shared<const optics::LatLongMap>(std::move(map)), std::move(light)});
+  return std::make_shared<const scene::Environment>(scene::Environment{
+      "environment", std::make_shared<const optics::LatLongMap>(std::move(map)), std::move(light), 0, 1, occluded});
 }
 
 /// 1024² of no particular pattern, thrown on the mesh from its front.
@@ -109,9 +110,9 @@ Times measure(const testing::Mesh& mesh, const Settings& settings, bool shadows,
   const bool profile = extra == "better-dipole" || extra == "normalized-diffusion";
   const auto scene = bench::make_scene(mesh, profile ? settings.material + "+" + extra : settings.material,
                                        bench::lights(settings.coloured));
-  if (extra.ends_with("environment")) scene->environment = sky();
+  if (extra.ends_with("environment")) scene->environment = sky(extra.starts_with("occluded"));
   if (extra.starts_with("coat")) scene->materials.front().coat = optics::Coat{0.1f};
-  if (extra == "albedo" || extra == "coat+maps") add_pictures(mesh, extra == "coat+maps", *scene);
+  if (extra == "albedo" || extra == "coat+maps, occluded environment") add_pictures(mesh, extra == "coat+maps", *scene);
   bench::LambertFrame lambert(mesh.triangles, settings.size_px);
   render::FrameRequest request;
   request.width_px = request.height_px = settings.size_px;

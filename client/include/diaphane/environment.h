@@ -21,6 +21,7 @@ struct EnvironmentMap {
 struct EnvironmentOptions {
   float rotation_deg = 0;  ///< about +y, counter-clockwise seen from above
   float intensity = 1;     ///< multiplies the map, 0..1e6
+  bool occlusion = false;  ///< bodies hide from each other and themselves what of it is no lamp; costs 48 depth maps
 };
 
 /// Reads a Radiance picture (.hdr: RGBE, run lengths old or new, EXPOSURE divided out) or an OpenEXR image (R G B or Y;

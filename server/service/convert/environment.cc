@@ -23,8 +23,7 @@ absl::Status check_settings(const v1::Environment& message) {
     absl::Status intensity = check_range("environment.intensity", message.intensity(), 0, kLargestIntensity);
     if (!intensity.ok()) return intensity;
   }
-  if (!message.occlusion()) return absl::OkStatus();
-  return base::field_error(absl::StatusCode::kUnimplemented, {"environment.occlusion", "true", "false"});
+  return absl::OkStatus();
 }
 
 float intensity_of(const v1::Environment& message) { return message.has_intensity() ? message.intensity() : 1.0f; }
@@ -46,8 +45,8 @@ absl::StatusOr<EnvironmentSpec> from_proto(const v1::EnvironmentHeader& message)
   if (message.sha256().size() != Sha256::kBytes) {
     return base::invalid_field("sha256", "32 bytes", fmt::format("{} bytes", message.sha256().size()));
   }
-  return EnvironmentSpec{environment.width_px(), environment.height_px(), environment.rotation_deg(),
-                         intensity_of(environment), PayloadSpec{{}, needed, message.sha256()}};
+  return EnvironmentSpec{environment.width_px(),    environment.height_px(), environment.rotation_deg(),
+                         intensity_of(environment), environment.occlusion(), PayloadSpec{{}, needed, message.sha256()}};
 }
 
 absl::StatusOr<optics::LatLongMap> read_map(const EnvironmentSpec& spec, std::span<const char> bytes) {
@@ -74,6 +73,7 @@ absl::StatusOr<scene::EnvironmentPatch> from_proto(const v1::Environment& messag
   scene::EnvironmentPatch patch;
   if (names(mask, "rotation_deg")) patch.rotation_deg = message.rotation_deg();
   if (names(mask, "intensity")) patch.intensity = intensity_of(message);
+  if (names(mask, "occlusion")) patch.occlusion = message.occlusion();
   return patch;
 }
 
@@ -83,6 +83,7 @@ void to_proto(const scene::EnvironmentPtr& environment, v1::Environment& message
   message.set_height_px(environment->map->height_px);
   message.set_rotation_deg(environment->rotation_deg);
   message.set_intensity(environment->intensity);
+  message.set_occlusion(environment->occlusion);
   for (const optics::EnvironmentLamp& lamp : environment->light->lamps) {
     v1::EnvironmentLamp& shown = *message.add_lamps();
     to_proto(render::rotated_about_y(lamp.direction, environment->rotation_deg), *shown.mutable_direction());

@@ -16,10 +16,11 @@ struct EnvironmentSpec {
   uint32_t height_px = 0;
   float rotation_deg = 0;
   float intensity = 1;
+  bool occlusion = false;
   PayloadSpec payload;
 };
 
-/// Errors name the field; occlusion is refused.
+/// Errors name the field.
 absl::StatusOr<EnvironmentSpec> from_proto(const v1::EnvironmentHeader& message);
 
 /// `bytes` are the spec's. INVALID_ARGUMENT names the first pixel that is not within 0..1e9.

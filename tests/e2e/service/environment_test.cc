@@ -107,6 +107,20 @@ TEST_F(EnvironmentTest, ComesInChunksAndCanBeReadUpdatedAndDeleted) {
   EXPECT_EQ(scenes_->GetEnvironment(&context, get, &environment).error_code(), grpc::StatusCode::NOT_FOUND);
 }
 
+TEST_F(EnvironmentTest, IsHiddenByBodiesWhereItIsToldTo) {
+  v1::EnvironmentHeader with = header();
+  with.mutable_environment()->set_occlusion(true);
+  v1::EnvironmentResponse response;
+  ASSERT_TRUE(upload_environment(with, &response).ok());
+  EXPECT_TRUE(response.environment().occlusion());
+  v1::UpdateEnvironmentRequest update;
+  update.mutable_environment()->set_name(scene_ + "/environment");
+  update.mutable_update_mask()->add_paths("occlusion");
+  Context context;
+  ASSERT_TRUE(scenes_->UpdateEnvironment(&context, update, &response).ok());
+  EXPECT_FALSE(response.environment().occlusion());
+}
+
 TEST_F(EnvironmentTest, TellsTheLampsThatItTookOut) {
   pixels_.assign(3 * 64 * 32, 0.1f);
   for (int c = 0; c < 3; ++c) pixels_[3 * (16 * 64 + 32) + c] = 500;
@@ -152,10 +166,6 @@ TEST_F(EnvironmentTest, IsRefusedByFieldValueAndRange) {
   wrong = header();
   wrong.mutable_environment()->set_rotation_deg(std::numeric_limits<float>::quiet_NaN());
   expect_refused(wrong, "environment.rotation_deg", "1000000");
-  wrong = header();
-  wrong.mutable_environment()->set_occlusion(true);
-  expect_refused(wrong, "environment.occlusion", "false",
-                 static_cast<grpc::StatusCode>(absl::StatusCode::kUnimplemented));
   wrong = header();
   wrong.set_parent("scenes/0");
   expect_refused(wrong, "parent", "an existing scene", grpc::StatusCode::NOT_FOUND);

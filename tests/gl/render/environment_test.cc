@@ -57,6 +57,73 @@ TEST_F(EnvironmentFrames, OfOneRadianceEnterEverywhereAlike) {
   }
 }
 
+/// Each pixel's E with occlusion over E without.
+std::vector<float> open_shares(const std::vector<float>& occluded, const std::vector<float>& open) {
+  std::vector<float> shares;
+  for (size_t i = 0; i < open.size(); i += 7) shares.push_back(open[i + 3] == 0 ? -1 : occluded[i + 5] / open[i + 5]);
+  return shares;
+}
+
+/// Of the floor below: the share of E that a wall of 20 mm at `away_mm` leaves, by quadrature. The sky is 2 + y.
+float open_share_beside_a_wall(float away_mm, float refractive_index) {
+  constexpr int kSteps = 400;
+  double all = 0, open = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const float y = (static_cast<float>(i) + 0.5f) / kSteps;
+    const double entering = y * (2 + y) * optics::fresnel_transmittance(refractive_index, y);
+    for (int j = 0; j < kSteps; ++j) {
+      const float angle = glm::radians(360 * (static_cast<float>(j) + 0.5f) / kSteps), side = std::sqrt(1 - y * y);
+      const float x = side * std::cos(angle), z = side * std::sin(angle);
+      const float far = away_mm / -x;  // to the wall's plane
+      const bool hidden = x < 0 && far * y < 20 && std::abs(far * z) < 20;
+      all += entering;
+      open += hidden ? 0 : entering;
+    }
+  }
+  return static_cast<float>(open / all);
+}
+
+TEST_F(EnvironmentFrames, AreHiddenByAWallFromItsFootAndByNothingFromABall) {
+  // A floor of 40 mm with a wall of 20 mm across its middle, seen from above: 2.86 pixels a millimetre.
+  Triangles floor = make_box({40, 2, 40}, 40), wall = make_box({2, 20, 40}, 20);
+  const auto first = static_cast<uint32_t>(floor.positions.size());
+  for (const glm::vec3& p : wall.positions) floor.positions.push_back(p + glm::vec3(-1, 11, 0));
+  for (const glm::uvec3& t : wall.triangles) floor.triangles.push_back(t + first);
+  for (const bool ball : {false, true}) {
+    auto scene = ball ? make_ball_scene(6, 24, "marble") : make_scene(floor, "marble");
+    const auto sky = [](const glm::vec3& d) { return glm::vec3(2 + d.y); };
+    for (const Technique technique :
+         {Technique::kIntegral, Technique::kPaper, Technique::kLambert, Technique::kReference}) {
+      FrameRequest request = request_of(scene, technique);
+      request.camera = {{8, 160, 0}, {8, 0, 0}, {0, 0, -1}, 4};
+      if (ball) request.camera = {{8, 160, 0}, {0, 0, 0}, {0, 0, -1}, 6};
+      request.channels = {Channel::kIrradiance};
+      const auto open = environment_of(sky);
+      auto occluded = std::make_shared<scene::Environment>(*open);
+      occluded->occlusion = true;
+      scene->environment = open;
+      const std::vector<float> without = render(request);
+      scene->environment = occluded;
+      const std::vector<float> shares = open_shares(render(request), without);
+      if (ball) {
+        for (const float share : shares) {
+          if (share < 0) continue;
+          EXPECT_NEAR(share, 1, 0.03f) << static_cast<int>(technique);
+        }
+        continue;
+      }
+      const float eta = technique == Technique::kLambert ? 1.0f : 1.5f;
+      // Of 48 directions, two or three weigh as much as this; the reference has four times as many.
+      const float error = technique == Technique::kReference ? 0.03f : 0.06f;
+      for (const size_t column : {8, 14, 24, 40}) {
+        const float x = 8 + (static_cast<float>(column) + 0.5f - 24) * 0.35f;
+        EXPECT_NEAR(shares[16 * 48 + column], open_share_beside_a_wall(x, eta), error)
+            << static_cast<int>(technique) << ", column " << column;
+      }
+    }
+  }
+}
+
 TEST_F(EnvironmentFrames, AreSeenBehindTheBodyWhereTheirLightComesFrom) {
   auto scene = make_scene(make_box({10, 10, 10}, 4), "marble");
   // Each way has a colour of its own.

@@ -84,7 +84,31 @@ absl::Status SceneStore::delete_scene(const Reference& scene) {
   retired = std::move(entry->second);
   scenes_.erase(entry);
   order_of_name_.erase(order);
+  tell_watchers(std::string(scene.name), nullptr);
+  watchers_.erase(std::string(scene.name));
   return absl::OkStatus();
+}
+
+absl::StatusOr<std::shared_ptr<const SceneStore::Watcher>> SceneStore::watch(const Reference& scene, Watcher watcher) {
+  if (absl::Status form = check_scene_name(scene); !form.ok()) return form;
+  auto kept = std::make_shared<const Watcher>(std::move(watcher));
+  absl::MutexLock lock(&mutex_);
+  const auto order = order_of_name_.find(std::string(scene.name));
+  if (order == order_of_name_.end()) return not_found(scene, "scene");
+  watchers_[std::string(scene.name)].push_back(kept);
+  (*kept)(scenes_.at(order->second));
+  return kept;
+}
+
+void SceneStore::tell_watchers(const std::string& scene, const SnapshotPtr& snapshot) {
+  const auto found = watchers_.find(scene);
+  if (found == watchers_.end()) return;
+  std::erase_if(found->second, [&](const std::weak_ptr<const Watcher>& kept) {
+    const std::shared_ptr<const Watcher> watcher = kept.lock();
+    if (watcher != nullptr) (*watcher)(snapshot);
+    return watcher == nullptr;
+  });
+  if (found->second.empty()) watchers_.erase(found);
 }
 
 absl::StatusOr<SnapshotPtr> SceneStore::mutate(const Reference& scene, Change change) {
@@ -98,6 +122,7 @@ absl::StatusOr<SnapshotPtr> SceneStore::mutate(const Reference& scene, Change ch
   ++draft->revision;
   if (absl::Status changed = change(*draft); !changed.ok()) return changed;
   retired = std::exchange(current, std::move(draft));
+  tell_watchers(current->name, current);
   return current;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -158,6 +159,13 @@ class SceneStore {
   /// FAILED_PRECONDITION while a material uses it.
   absl::StatusOr<uint64_t> delete_texture(const Reference& texture);
 
+  /// Told of a scene's every revision, in order, and at last nothing, when the scene is deleted. Called with the store's
+  /// lock held: it must be quick, and must not call the store.
+  using Watcher = std::function<void(const SnapshotPtr&)>;
+  /// Tells `watcher` the newest revision at once, and goes on for as long as what it returns is kept.
+  absl::StatusOr<std::shared_ptr<const Watcher>> watch(const Reference& scene, Watcher watcher)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+
   const SceneLimits& limits() const { return limits_; }
   /// Of all meshes, environments, textures and uploads in flight.
   uint64_t mesh_bytes() const { return budget_.used_bytes(); }
@@ -167,6 +175,7 @@ class SceneStore {
 
   /// Applies `change` to a copy of the scene at the next revision, and puts the copy in the scene's place if it is OK.
   absl::StatusOr<SnapshotPtr> mutate(const Reference& scene, Change change) ABSL_LOCKS_EXCLUDED(mutex_);
+  void tell_watchers(const std::string& scene, const SnapshotPtr& snapshot) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   /// The same for the scene of a child.
   absl::StatusOr<SnapshotPtr> mutate_parent(const Reference& child, Collection collection, Change change);
   /// The scene of a child, which itself need not exist.
@@ -179,6 +188,7 @@ class SceneStore {
   std::map<uint64_t, SnapshotPtr> scenes_ ABSL_GUARDED_BY(mutex_);
   absl::flat_hash_map<std::string, uint64_t> order_of_name_ ABSL_GUARDED_BY(mutex_);
   uint64_t next_order_ ABSL_GUARDED_BY(mutex_) = 1;
+  absl::flat_hash_map<std::string, std::vector<std::weak_ptr<const Watcher>>> watchers_ ABSL_GUARDED_BY(mutex_);
 };
 
 }  // namespace diaphane::scene

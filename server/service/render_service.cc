@@ -6,6 +6,7 @@
 #include "absl/synchronization/mutex.h"
 #include "base/status.h"
 #include "service/convert/frame.h"
+#include "service/frame_stream.h"
 #include "service/progress_reactor.h"
 #include "service/unary.h"
 
@@ -85,6 +86,11 @@ grpc::ServerWriteReactor<v1::RenderFrameWithProgressResponse>* RenderService::Re
   absl::StatusOr<session::FrameTask> task = make_task(store_, limits_, *context, *request);
   if (!task.ok()) return new RefusedStream(task.status());
   return new ProgressReactor(render_thread_, *std::move(task));
+}
+
+grpc::ServerBidiReactor<v1::StreamFramesRequest, v1::StreamFramesResponse>* RenderService::StreamFrames(
+    grpc::CallbackServerContext*) {
+  return new FrameStream(store_, render_thread_, limits_);
 }
 
 }  // namespace diaphane::service

@@ -10,7 +10,7 @@ namespace diaphane::service {
 /// Frames of scenes. Thread-safe. What it borrows outlives it, and the server that serves it.
 class RenderService final : public v1::RenderService::CallbackService {
  public:
-  RenderService(const ServiceLimits& limits, const scene::SceneStore& store, session::RenderThread& render_thread)
+  RenderService(const ServiceLimits& limits, scene::SceneStore& store, session::RenderThread& render_thread)
       : limits_(limits), store_(store), render_thread_(render_thread) {}
 
  private:
@@ -19,8 +19,11 @@ class RenderService final : public v1::RenderService::CallbackService {
   grpc::ServerWriteReactor<v1::RenderFrameWithProgressResponse>* RenderFrameWithProgress(
       grpc::CallbackServerContext* context, const v1::RenderFrameRequest* request) override;
 
+  grpc::ServerBidiReactor<v1::StreamFramesRequest, v1::StreamFramesResponse>* StreamFrames(
+      grpc::CallbackServerContext* context) override;
+
   const ServiceLimits limits_;
-  const scene::SceneStore& store_;
+  scene::SceneStore& store_;
   session::RenderThread& render_thread_;
 };
 

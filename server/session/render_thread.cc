@@ -117,6 +117,7 @@ RenderThread::JobPtr RenderThread::next_job() {
 
 void RenderThread::draw(render::FrameRenderer& renderer, const JobPtr& job) {
   const double queued_ms = milliseconds_since(job->submitted());
+  if (!job->choose()) return end(job, absl::CancelledError("the frame is not wanted any more"));
   absl::StatusOr<render::Frame> frame =
       without_exceptions([&] { return renderer.render(job->request(), job->cancelled()); });
   if (job->cancelled()) return;  // Whoever cancelled it ends it.

@@ -1,0 +1,96 @@
+// Frames as a scene changes, as a stream.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/synchronization/mutex.h"
+#include "absl/time/time.h"
+#include "diaphane/v1/render_service.grpc.pb.h"
+#include "grpcpp/alarm.h"
+#include "scene/scene_store.h"
+#include "service/convert/stream.h"
+#include "service/limits.h"
+#include "session/render_thread.h"
+
+namespace diaphane::service {
+
+/// One call of StreamFrames. At most three frames of it are on their way: one waits, and shows what is newest when its
+/// turn comes, one is drawn, one is encoded. Of what waits to be written only the newest is kept. Finishes exactly
+/// once: at the client's end, its cancellation, or an error. Deletes itself.
+class FrameStream final : public grpc::ServerBidiReactor<v1::StreamFramesRequest, v1::StreamFramesResponse> {
+ public:
+  FrameStream(scene::SceneStore& store, session::RenderThread& render_thread, const ServiceLimits& limits);
+
+  void OnReadDone(bool ok) override;
+  void OnWriteDone(bool ok) override;
+  void OnCancel() override;
+  void OnDone() override;
+
+ private:
+  /// By which others reach a reactor that may be gone.
+  struct Link {
+    absl::Mutex mutex;
+    FrameStream* reactor ABSL_GUARDED_BY(mutex);  ///< null once it is gone
+    std::optional<grpc::Alarm> alarm ABSL_GUARDED_BY(mutex);
+  };
+  /// What a frame shows; revisions and views only grow.
+  struct Shown {
+    uint64_t revision = 0;
+    uint64_t view_sequence = 0;
+    bool at_rest = false;
+    auto operator<=>(const Shown&) const = default;
+  };
+  struct Flight {
+    bool at_rest = false;
+    std::optional<Shown> shown;  ///< once it is being drawn
+    std::weak_ptr<session::FrameJob> job;
+  };
+
+  absl::Status take(const v1::StreamFramesRequest& request);
+  absl::Status open(const v1::StreamOpening& opening);
+  void cancel_flights();
+
+  // These need the link's mutex.
+  absl::Status take_view(const v1::StreamView& message);
+  absl::Status take_credits(uint32_t credits);
+  void see(const scene::SnapshotPtr& snapshot);
+  /// What is newest; nothing while it cannot be shown.
+  std::optional<Shown> wanted() const;
+  void advance();
+  void start(bool at_rest);
+  bool choose(Flight& flight, render::FrameRequest& request);
+  void end(const std::shared_ptr<Flight>& flight, absl::StatusOr<session::EncodedFrame> frame);
+  void write_next();
+  void wake_at(absl::Time due);
+  void at_alarm();
+  void finish(const absl::Status& status);
+
+  scene::SceneStore& store_;
+  session::RenderThread& render_thread_;
+  const ServiceLimits& limits_;
+  const std::shared_ptr<Link> link_ = std::make_shared<Link>();
+
+  v1::StreamFramesRequest request_;
+  v1::StreamFramesResponse message_;
+  std::shared_ptr<const scene::SceneStore::Watcher> watch_;
+  scene::SnapshotPtr snapshot_;
+  std::optional<StreamView> view_;
+  uint32_t credits_ = 0;
+  std::vector<std::shared_ptr<Flight>> flights_;
+  std::optional<std::pair<Shown, session::EncodedFrame>> ready_;  ///< waits to be written
+  Shown begun_;                                                   ///< the newest that was ever drawn
+  Shown sent_;                                                    ///< the newest that was ever written
+  absl::Time changed_at_ = absl::InfinitePast();
+  absl::Time written_at_ = absl::Now();
+  absl::Time wakes_at_ = absl::InfiniteFuture();
+  std::optional<absl::Status> ending_;
+  bool writing_ = false;
+  bool closing_ = false;  ///< nothing new begins
+  bool finished_ = false;
+};
+
+}  // namespace diaphane::service

@@ -43,6 +43,15 @@ absl::Status invalid_field(std::string_view field, std::string_view range, doubl
   return invalid_field(field, range, fmt::format("{}", value));
 }
 
+absl::Status within(std::string_view prefix, const absl::Status& status) {
+  FieldViolation violation = field_violation(status);
+  if (violation.field.empty()) {
+    return absl::Status(status.code(), fmt::format("{} {}", prefix, std::string(status.message())));
+  }
+  violation.field.insert(0, prefix);
+  return field_error(status.code(), violation);
+}
+
 FieldViolation field_violation(const absl::Status& status) {
   const auto payload = status.GetPayload(kPayloadUrl);
   if (!payload.has_value()) return {};

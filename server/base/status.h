@@ -27,6 +27,10 @@ absl::Status invalid_field(std::string_view field, std::string_view range, doubl
 /// The same under another canonical code, such as RESOURCE_EXHAUSTED for a limit or NOT_FOUND for a name.
 absl::Status field_error(absl::StatusCode code, const FieldViolation& violation);
 
+/// The same error of a field within another: `prefix` comes before its field, or before the message where it names
+/// none.
+absl::Status within(std::string_view prefix, const absl::Status& status);
+
 /// The violation that `status` carries, or an empty one. Thread-safe.
 FieldViolation field_violation(const absl::Status& status);
 

@@ -9,6 +9,7 @@
 #include "base/status.h"
 #include "fmt/format.h"
 #include "scene/names.h"
+#include "scene/scene_store.h"
 #include "scene/snapshot.h"
 
 namespace diaphane::scene {
@@ -32,5 +33,12 @@ absl::Status check_room_for_one(const std::vector<Child>& children, Collection c
                            {std::string(collection_id(collection)), fmt::format("{}", children.size() + 1),
                             fmt::format("at most {} in a scene", max_count)});
 }
+
+// What updates do to a scene's draft; each returns the updated child, or changes nothing.
+absl::StatusOr<Mesh> update_in(SceneSnapshot& draft, const Reference& mesh, const MeshPatch& patch);
+absl::StatusOr<Material> update_in(SceneSnapshot& draft, const Reference& material, const MaterialPatch& patch);
+absl::StatusOr<Light> update_in(SceneSnapshot& draft, const Reference& light, const LightPatch& patch);
+absl::StatusOr<std::shared_ptr<const Environment>> update_in(SceneSnapshot& draft, const Reference& environment,
+                                                             const EnvironmentPatch& patch);
 
 }  // namespace diaphane::scene

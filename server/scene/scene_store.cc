@@ -9,7 +9,7 @@
 namespace diaphane::scene {
 namespace {
 
-void apply(const ScenePatch& patch, SceneSnapshot& draft) {
+void apply_patch(const ScenePatch& patch, SceneSnapshot& draft) {
   if (patch.display_name.has_value()) draft.display_name = *patch.display_name;
   if (patch.millimetres_per_unit.has_value()) draft.millimetres_per_unit = *patch.millimetres_per_unit;
 }
@@ -32,7 +32,7 @@ absl::StatusOr<SnapshotPtr> SceneStore::create_scene(const ScenePatch& values) {
   auto created = std::make_shared<SceneSnapshot>();
   created->name = make_scene_name();
   created->revision = 1;
-  apply(values, *created);
+  apply_patch(values, *created);
   absl::MutexLock lock(&mutex_);
   if (scenes_.size() >= limits_.max_scenes) {
     return base::field_error(absl::StatusCode::kResourceExhausted, {"scenes", fmt::format("{}", scenes_.size() + 1),
@@ -69,7 +69,7 @@ absl::StatusOr<ScenePage> SceneStore::scenes(size_t page_size, const Reference& 
 
 absl::StatusOr<SnapshotPtr> SceneStore::update_scene(const Reference& scene, const ScenePatch& patch) {
   return mutate(scene, [&](SceneSnapshot& draft) {
-    apply(patch, draft);
+    apply_patch(patch, draft);
     return absl::OkStatus();
   });
 }

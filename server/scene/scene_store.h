@@ -6,8 +6,10 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
@@ -62,6 +64,18 @@ struct EnvironmentPatch {
 struct MeshPatch {
   std::optional<std::string> material;
   std::optional<glm::mat4> scene_from_mesh;
+};
+
+/// New positions of some vertices, or of all.
+struct PositionsPatch {
+  std::vector<uint32_t> indices;     ///< empty: all, in order
+  std::vector<glm::vec3> positions;  ///< mesh units, one for each
+};
+
+/// One change of an edit: which resource, and what it becomes.
+struct SceneChange {
+  std::string name;
+  std::variant<PositionsPatch, MeshPatch, MaterialPatch, LightPatch, EnvironmentPatch> patch;
 };
 
 /// How big a mesh will be.
@@ -159,8 +173,12 @@ class SceneStore {
   /// FAILED_PRECONDITION while a material uses it.
   absl::StatusOr<uint64_t> delete_texture(const Reference& texture);
 
-  /// Told of a scene's every revision, in order, and at last nothing, when the scene is deleted. Called with the store's
-  /// lock held: it must be quick, and must not call the store.
+  /// Applies all changes as one revision, or none: the error of the first that cannot be, its field with "changes[i]."
+  /// before it. Returns the new revision.
+  absl::StatusOr<uint64_t> apply(const Reference& scene, std::span<const SceneChange> changes);
+
+  /// Told of a scene's every revision, in order, and at last nothing, when the scene is deleted. Called with the
+  /// store's lock held: it must be quick, and must not call the store.
   using Watcher = std::function<void(const SnapshotPtr&)>;
   /// Tells `watcher` the newest revision at once, and goes on for as long as what it returns is kept.
   absl::StatusOr<std::shared_ptr<const Watcher>> watch(const Reference& scene, Watcher watcher)
@@ -178,6 +196,8 @@ class SceneStore {
   void tell_watchers(const std::string& scene, const SnapshotPtr& snapshot) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   /// The same for the scene of a child.
   absl::StatusOr<SnapshotPtr> mutate_parent(const Reference& child, Collection collection, Change change);
+  template <typename Child, typename Patch>
+  absl::StatusOr<Changed<Child>> update_child(const Reference& child, Collection collection, const Patch& patch);
   /// The scene of a child, which itself need not exist.
   absl::StatusOr<SnapshotPtr> parent_of(const Reference& child, Collection collection) const;
 

@@ -5,7 +5,7 @@
 namespace diaphane::scene {
 namespace {
 
-absl::Status apply(const LightPatch& patch, LightKind& light) {
+absl::Status apply_patch(const LightPatch& patch, LightKind& light) {
   if (patch.kind.has_value()) light = *patch.kind;
   if (!patch.position.has_value() && !patch.intensity_w_sr.has_value()) return absl::OkStatus();
   auto* point = std::get_if<PointLight>(&light);
@@ -44,6 +44,19 @@ absl::Status check_textures(const SceneSnapshot& scene, const SurfaceTextures& t
 
 }  // namespace
 
+template <typename Child, typename Patch>
+absl::StatusOr<Changed<Child>> SceneStore::update_child(const Reference& child, Collection collection,
+                                                        const Patch& patch) {
+  Changed<Child> changed;
+  const auto scene = mutate_parent(child, collection, [&](SceneSnapshot& draft) {
+    absl::StatusOr<Child> updated = update_in(draft, child, patch);
+    if (updated.ok()) changed = {*std::move(updated), draft.revision};
+    return updated.status();
+  });
+  if (!scene.ok()) return scene.status();
+  return changed;
+}
+
 absl::StatusOr<Changed<Material>> SceneStore::create_material(const Reference& parent, const NewMaterial& material) {
   Material created;
   set_form(&created, material.form, material.profile);
@@ -69,22 +82,20 @@ absl::StatusOr<Material> SceneStore::material(const Reference& material) const {
   return *found;
 }
 
+absl::StatusOr<Material> update_in(SceneSnapshot& draft, const Reference& material, const MaterialPatch& patch) {
+  const auto found = find_child(draft.materials, material.name);
+  if (found == draft.materials.end()) return not_found(material, "material");
+  if (patch.textures.has_value()) {
+    if (absl::Status known = check_textures(draft, *patch.textures); !known.ok()) return known;
+    found->textures = *patch.textures;
+  }
+  set_form(&*found, patch.form.value_or(found->form), patch.profile.value_or(found->coefficients.profile));
+  if (patch.coat.has_value()) found->coat = *patch.coat;
+  return *found;
+}
+
 absl::StatusOr<Changed<Material>> SceneStore::update_material(const Reference& material, const MaterialPatch& patch) {
-  Changed<Material> changed;
-  const auto scene = mutate_parent(material, Collection::kMaterials, [&](SceneSnapshot& draft) {
-    const auto found = find_child(draft.materials, material.name);
-    if (found == draft.materials.end()) return not_found(material, "material");
-    if (patch.textures.has_value()) {
-      if (absl::Status known = check_textures(draft, *patch.textures); !known.ok()) return known;
-      found->textures = *patch.textures;
-    }
-    set_form(&*found, patch.form.value_or(found->form), patch.profile.value_or(found->coefficients.profile));
-    if (patch.coat.has_value()) found->coat = *patch.coat;
-    changed = {*found, draft.revision};
-    return absl::OkStatus();
-  });
-  if (!scene.ok()) return scene.status();
-  return changed;
+  return update_child<Material>(material, Collection::kMaterials, patch);
 }
 
 absl::StatusOr<uint64_t> SceneStore::delete_material(const Reference& material) {
@@ -126,17 +137,15 @@ absl::StatusOr<Light> SceneStore::light(const Reference& light) const {
   return *found;
 }
 
+absl::StatusOr<Light> update_in(SceneSnapshot& draft, const Reference& light, const LightPatch& patch) {
+  const auto found = find_child(draft.lights, light.name);
+  if (found == draft.lights.end()) return not_found(light, "light");
+  if (absl::Status applied = apply_patch(patch, found->kind); !applied.ok()) return applied;
+  return *found;
+}
+
 absl::StatusOr<Changed<Light>> SceneStore::update_light(const Reference& light, const LightPatch& patch) {
-  Changed<Light> changed;
-  const auto scene = mutate_parent(light, Collection::kLights, [&](SceneSnapshot& draft) {
-    const auto found = find_child(draft.lights, light.name);
-    if (found == draft.lights.end()) return not_found(light, "light");
-    if (absl::Status applied = apply(patch, found->kind); !applied.ok()) return applied;
-    changed = {*found, draft.revision};
-    return absl::OkStatus();
-  });
-  if (!scene.ok()) return scene.status();
-  return changed;
+  return update_child<Light>(light, Collection::kLights, patch);
 }
 
 absl::StatusOr<uint64_t> SceneStore::delete_light(const Reference& light) {

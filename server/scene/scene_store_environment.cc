@@ -1,4 +1,5 @@
 // The environment of a scene.
+#include "scene/children.h"
 #include "scene/scene_store.h"
 
 namespace diaphane::scene {
@@ -39,20 +40,26 @@ absl::StatusOr<EnvironmentPtr> SceneStore::environment(const Reference& environm
   return (*of)->environment;
 }
 
+absl::StatusOr<EnvironmentPtr> update_in(SceneSnapshot& draft, const Reference& environment,
+                                         const EnvironmentPatch& patch) {
+  if (draft.environment == nullptr) return not_found(environment, "environment");
+  Environment updated = *draft.environment;
+  if (patch.rotation_deg.has_value()) updated.rotation_deg = *patch.rotation_deg;
+  if (patch.intensity.has_value()) updated.intensity = *patch.intensity;
+  if (patch.occlusion.has_value()) updated.occlusion = *patch.occlusion;
+  draft.environment = std::make_shared<const Environment>(std::move(updated));
+  return draft.environment;
+}
+
 absl::StatusOr<Changed<EnvironmentPtr>> SceneStore::update_environment(const Reference& environment,
                                                                        const EnvironmentPatch& patch) {
   const absl::StatusOr<std::string> name = scene_of_environment(environment);
   if (!name.ok()) return name.status();
   Changed<EnvironmentPtr> changed;
   const auto scene = mutate({environment.field, *name}, [&](SceneSnapshot& draft) {
-    if (draft.environment == nullptr) return not_found(environment, "environment");
-    Environment updated = *draft.environment;
-    if (patch.rotation_deg.has_value()) updated.rotation_deg = *patch.rotation_deg;
-    if (patch.intensity.has_value()) updated.intensity = *patch.intensity;
-    if (patch.occlusion.has_value()) updated.occlusion = *patch.occlusion;
-    draft.environment = std::make_shared<const Environment>(std::move(updated));
-    changed = {draft.environment, draft.revision};
-    return absl::OkStatus();
+    absl::StatusOr<EnvironmentPtr> updated = update_in(draft, environment, patch);
+    if (updated.ok()) changed = {*std::move(updated), draft.revision};
+    return updated.status();
   });
   if (!scene.ok()) return scene.status();
   return changed;

@@ -81,20 +81,25 @@ absl::StatusOr<Mesh> SceneStore::mesh(const Reference& mesh) const {
   return **found;
 }
 
+absl::StatusOr<Mesh> update_in(SceneSnapshot& draft, const Reference& mesh, const MeshPatch& patch) {
+  const auto found = find_child(draft.meshes, mesh.name);
+  if (found == draft.meshes.end()) return not_found(mesh, "mesh");
+  Mesh updated = **found;
+  if (patch.material.has_value()) {
+    if (absl::Status known = check_material(draft, {kMaterialField, *patch.material}); !known.ok()) return known;
+    updated.material = *patch.material;
+  }
+  if (patch.scene_from_mesh.has_value()) updated.scene_from_mesh = *patch.scene_from_mesh;
+  *found = std::make_shared<const Mesh>(updated);
+  return updated;
+}
+
 absl::StatusOr<Changed<Mesh>> SceneStore::update_mesh(const Reference& mesh, const MeshPatch& patch) {
   Changed<Mesh> changed;
   const auto scene = mutate_parent(mesh, Collection::kMeshes, [&](SceneSnapshot& draft) {
-    const auto found = find_child(draft.meshes, mesh.name);
-    if (found == draft.meshes.end()) return not_found(mesh, "mesh");
-    Mesh updated = **found;
-    if (patch.material.has_value()) {
-      if (absl::Status known = check_material(draft, {kMaterialField, *patch.material}); !known.ok()) return known;
-      updated.material = *patch.material;
-    }
-    if (patch.scene_from_mesh.has_value()) updated.scene_from_mesh = *patch.scene_from_mesh;
-    *found = std::make_shared<const Mesh>(updated);
-    changed = {std::move(updated), draft.revision};
-    return absl::OkStatus();
+    absl::StatusOr<Mesh> updated = update_in(draft, mesh, patch);
+    if (updated.ok()) changed = {*std::move(updated), draft.revision};
+    return updated.status();
   });
   if (!scene.ok()) return scene.status();
   return changed;

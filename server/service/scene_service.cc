@@ -2,6 +2,7 @@
 
 #include "base/status.h"
 #include "service/convert/check.h"
+#include "service/edit_stream.h"
 #include "service/unary.h"
 
 namespace diaphane::service {
@@ -58,6 +59,10 @@ SceneService::Unary* SceneService::DeleteScene(Context* context, const v1::Delet
   return answer(context, apply_once(replies_, "DeleteScene", *request, *response, [&](google::protobuf::Empty&) {
                   return store_.delete_scene({"name", request->name()});
                 }));
+}
+
+grpc::ServerBidiReactor<v1::EditSceneRequest, v1::EditSceneResponse>* SceneService::EditScene(Context*) {
+  return new EditStream(store_);
 }
 
 }  // namespace diaphane::service

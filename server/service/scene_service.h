@@ -48,6 +48,8 @@ class SceneService final : public v1::SceneService::CallbackService {
   Unary* DeleteMesh(Context*, const v1::DeleteMeshRequest*, v1::DeleteResponse*) override;
   Reads<v1::UpdatePositionsRequest>* UpdatePositions(Context*, v1::MeshResponse*) override;
 
+  grpc::ServerBidiReactor<v1::EditSceneRequest, v1::EditSceneResponse>* EditScene(Context*) override;
+
   Reads<v1::UploadTextureRequest>* UploadTexture(Context*, v1::TextureResponse*) override;
   Unary* GetTexture(Context*, const v1::GetTextureRequest*, v1::Texture*) override;
   Unary* ListTextures(Context*, const v1::ListTexturesRequest*, v1::ListTexturesResponse*) override;

@@ -1,0 +1,84 @@
+#include "service/edit_stream.h"
+
+#include <new>
+
+#include "base/status.h"
+#include "fmt/format.h"
+#include "service/convert/edit.h"
+#include "service/convert/status.h"
+
+namespace diaphane::service {
+
+void EditStream::OnReadDone(bool ok) {
+  const absl::Status status = ok ? take(request_) : absl::OkStatus();
+  if (ok && status.ok()) return StartRead(&request_);
+  const absl::MutexLock lock(&mutex_);
+  if (!ending_.has_value()) ending_ = status;
+  if (!writing_) acknowledge();
+}
+
+void EditStream::OnWriteDone(bool ok) {
+  const absl::MutexLock lock(&mutex_);
+  writing_ = false;
+  if (!ok) return finish(absl::CancelledError("the client is gone"));
+  acknowledge();
+}
+
+void EditStream::OnCancel() {
+  const absl::MutexLock lock(&mutex_);
+  ending_ = absl::CancelledError("cancelled by the caller");
+  if (!writing_) finish(*ending_);
+}
+
+absl::Status EditStream::take(const v1::EditSceneRequest& request) {
+  if (request.has_opening()) {
+    if (!scene_.empty()) return base::invalid_field("part", "one opening", "a second");
+    scene_ = request.opening().scene();
+    return store_.scene({"scene", scene_}).status();
+  }
+  if (scene_.empty()) return base::invalid_field("part", "an opening first", "none");
+  if (!request.has_edit()) return base::invalid_field("part", "an edit", "nothing");
+  try {
+    return apply(request.edit());
+  } catch (const std::bad_alloc&) {
+    return absl::ResourceExhaustedError("out of memory");
+  }
+}
+
+absl::Status EditStream::apply(const v1::SceneEdit& edit) {
+  if (sequence_.has_value() && edit.sequence() != *sequence_ + 1) {
+    return base::invalid_field("edit.sequence", fmt::format("{}, after {}", *sequence_ + 1, *sequence_),
+                               fmt::format("{}", edit.sequence()));
+  }
+  const auto changes = from_proto(edit);
+  if (!changes.ok()) return changes.status();
+  const absl::StatusOr<uint64_t> revision = store_.apply({"scene", scene_}, *changes);
+  if (!revision.ok()) return revision.status();
+  sequence_ = edit.sequence();
+  const absl::MutexLock lock(&mutex_);
+  applied_.set_applied(edit.sequence());
+  applied_.set_scene_revision(*revision);
+  if (!writing_) acknowledge();
+  return absl::OkStatus();
+}
+
+/// Tells what is applied and was not told, or ends.
+void EditStream::acknowledge() {
+  if (finished_) return;
+  if (applied_.scene_revision() == told_) {
+    if (ending_.has_value()) finish(*ending_);
+    return;
+  }
+  message_ = applied_;
+  told_ = applied_.scene_revision();
+  writing_ = true;
+  StartWrite(&message_);
+}
+
+void EditStream::finish(const absl::Status& status) {
+  if (finished_) return;
+  finished_ = true;
+  Finish(to_grpc(status));
+}
+
+}  // namespace diaphane::service

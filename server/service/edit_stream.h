@@ -1,0 +1,46 @@
+// Live changes of a scene, as a stream.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/synchronization/mutex.h"
+#include "diaphane/v1/scene_service.grpc.pb.h"
+#include "scene/scene_store.h"
+
+namespace diaphane::service {
+
+/// One call of EditScene. Edits are applied on the reading thread, one after the other: a client that sends faster is
+/// held back by its own stream. Finishes exactly once. Deletes itself.
+class EditStream final : public grpc::ServerBidiReactor<v1::EditSceneRequest, v1::EditSceneResponse> {
+ public:
+  explicit EditStream(scene::SceneStore& store) : store_(store) { StartRead(&request_); }
+
+  void OnReadDone(bool ok) override;
+  void OnWriteDone(bool ok) override;
+  void OnCancel() override;
+  void OnDone() override { delete this; }
+
+ private:
+  absl::Status take(const v1::EditSceneRequest& request);
+  absl::Status apply(const v1::SceneEdit& edit);
+  void acknowledge() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void finish(const absl::Status& status) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+
+  scene::SceneStore& store_;
+  // Of the reading thread.
+  v1::EditSceneRequest request_;
+  std::string scene_;
+  std::optional<uint64_t> sequence_;  ///< of the last edit
+
+  absl::Mutex mutex_;
+  v1::EditSceneResponse applied_ ABSL_GUARDED_BY(mutex_);
+  v1::EditSceneResponse message_;              ///< being written
+  uint64_t told_ ABSL_GUARDED_BY(mutex_) = 0;  ///< revision
+  bool writing_ ABSL_GUARDED_BY(mutex_) = false;
+  std::optional<absl::Status> ending_ ABSL_GUARDED_BY(mutex_);
+  bool finished_ ABSL_GUARDED_BY(mutex_) = false;
+};
+
+}  // namespace diaphane::service

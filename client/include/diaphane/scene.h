@@ -15,6 +15,7 @@
 #include "diaphane/environment.h"
 #include "diaphane/mesh_data.h"
 #include "diaphane/render_options.h"
+#include "diaphane/stream.h"
 #include "diaphane/texture.h"
 #include "diaphane/values.h"
 
@@ -152,6 +153,11 @@ class Scene {
   /// on the calling thread. Only Technique::kReference knows what lies between. It grows, unless the connection was
   /// lost and the frame begun anew.
   absl::StatusOr<RenderedFrame> render(const RenderOptions& options, const std::function<void(double)>& progress) const;
+
+  /// Frames as the scene changes.
+  FrameStream stream(const StreamOptions& options) const;
+  /// A way for live changes. Several may change one scene; each keeps the order of its own.
+  Deformer deform() const;
 
   /// Deletes the scene and all that is in it. Runs even once ClientOptions::stop was requested.
   absl::Status remove() const;

@@ -1,0 +1,106 @@
+// Live scenes: frames as they change, and changes as they come.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "diaphane/render_options.h"
+#include "diaphane/values.h"
+
+namespace diaphane {
+
+struct MeshHandle;
+struct MaterialHandle;
+struct LightHandle;
+
+/// What a stream shows.
+struct StreamView {
+  Camera camera;
+  Size size;
+  RenderSettings settings;                  ///< any technique but kReference
+  ImageFormat moving = ImageFormat::kJpeg;  ///< of frames while scene or view change; not kExr
+  uint32_t jpeg_quality = 80;               ///< 1..100
+  bool lossless_at_rest = true;             ///< a PNG follows once neither has changed for 150 ms
+  uint64_t min_revision = 0;                ///< no frame of an older revision comes
+};
+
+struct StreamOptions {
+  StreamView view;
+  /// Frames that may be on their way to here at once, 1..64: more hide the way's delay, fewer are never stale.
+  uint32_t frames_in_flight = 2;
+};
+
+struct StreamedFrame {
+  RenderedFrame frame;
+  uint64_t view_number = 0;  ///< what set_view() returned, or 1 for the first view
+  bool at_rest = false;      ///< the lossless frame
+};
+
+/// Frames of a scene as it changes; the newest revision and view win, and what is older and not drawn is passed over.
+/// next() is for one thread at a time; the others are for any. A connection that breaks is opened again, for as long as
+/// ClientOptions::connect_timeout, with the newest view.
+class FrameStream {
+ public:
+  FrameStream(FrameStream&&) noexcept;
+  FrameStream& operator=(FrameStream&&) noexcept;
+  ~FrameStream();
+
+  /// Waits for the next frame. Errors: CANCELLED after close(); those of Scene::render; NOT_FOUND the scene is gone.
+  absl::StatusOr<StreamedFrame> next();
+
+  /// Shows something else from now on; returns its number. Errors of the view come out of next().
+  uint64_t set_view(const StreamView& view);
+
+  /// Ends the stream, and a next() that waits.
+  void close();
+
+ private:
+  friend class Scene;
+  class Impl;
+  explicit FrameStream(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Live changes of a scene, in order. Calls return once a change is sent, and wait only while too many are not applied;
+/// what could not be sent, because the connection broke, is sent again on the next one. Changes between begin() and
+/// commit() are applied together, as one revision. One thread at a time.
+///
+/// Errors, of whichever call meets them first, and of all after it: those of the same change by Scene, with the field
+/// "changes[i].…"; UNAVAILABLE the server did not come back within ClientOptions::connect_timeout.
+class Deformer {
+ public:
+  Deformer(Deformer&&) noexcept;
+  Deformer& operator=(Deformer&&) noexcept;
+  ~Deformer();
+
+  /// New positions of all vertices of a mesh, in mesh units; its normals are computed from now on.
+  absl::Status set_positions(const MeshHandle& mesh, std::span<const Vec3> positions);
+  /// The same of some: vertex indices[i] to positions[i].
+  absl::Status set_positions(const MeshHandle& mesh, std::span<const uint32_t> indices,
+                             std::span<const Vec3> positions);
+  /// All positions in 16 bits an axis within the box from `lowest` to `highest`: half the bytes, and half a step of
+  /// (highest − lowest)/65535 lost.
+  absl::Status set_quantized_positions(const MeshHandle& mesh, std::span<const Vec3> positions, const Vec3& lowest,
+                                       const Vec3& highest);
+  absl::Status set_material(const MaterialHandle& handle, const Material& material);
+  absl::Status set_light(const LightHandle& handle, const Light& light);
+
+  /// From here on changes are kept, up to 256, and sent by commit().
+  void begin();
+  absl::Status commit();
+
+  /// Waits until all is applied; the scene's revision then.
+  absl::StatusOr<uint64_t> flush();
+
+ private:
+  friend class Scene;
+  class Impl;
+  explicit Deformer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace diaphane

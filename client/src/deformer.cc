@@ -1,0 +1,175 @@
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include "connection.h"
+#include "convert.h"
+#include "diaphane/scene.h"
+#include "diaphane/stream.h"
+#include "fmt/format.h"
+#include "reopening.h"
+
+namespace diaphane {
+
+using internal::to_proto;
+
+class Deformer::Impl {
+ public:
+  Impl(std::shared_ptr<internal::Connection> connection, std::string scene)
+      : connection_(std::move(connection)), reopening_(connection_->options()), scene_(std::move(scene)) {}
+
+  ~Impl() {
+    if (!stream_) return;
+    context_->TryCancel();
+    stream_->Finish();
+  }
+
+  void begin() { group_.emplace(); }
+
+  absl::Status add(v1::SceneChange change) {
+    if (group_.has_value()) {
+      *group_->add_changes() = std::move(change);
+      return failed_;
+    }
+    v1::SceneEdit edit;
+    *edit.add_changes() = std::move(change);
+    return send(std::move(edit));
+  }
+
+  absl::Status commit() {
+    if (!group_.has_value()) return absl::FailedPreconditionError("commit(): must follow begin()");
+    return send(*std::exchange(group_, std::nullopt));
+  }
+
+  absl::StatusOr<uint64_t> flush() {
+    if (absl::Status applied = wait_until(0); !applied.ok()) return applied;
+    return revision_;
+  }
+
+ private:
+  static constexpr size_t kMostWaiting = 32;
+
+  absl::Status send(v1::SceneEdit edit) {
+    if (!failed_.ok()) return failed_;
+    edit.set_sequence(++sequence_);
+    v1::EditSceneRequest request;
+    *request.mutable_edit() = std::move(edit);
+    waiting_.push_back(std::move(request));
+    // What is lost with a stream that breaks is written again to the next.
+    if (stream_ == nullptr) {
+      open();
+    } else {
+      stream_->Write(waiting_.back());
+    }
+    return waiting_.size() < kMostWaiting ? absl::OkStatus() : wait_until(kMostWaiting / 2);
+  }
+
+  /// Reads until at most `most` edits are not known to be applied.
+  absl::Status wait_until(size_t most) {
+    if (!failed_.ok()) return failed_;
+    while (waiting_.size() > most) {
+      v1::EditSceneResponse response;
+      if (stream_ == nullptr) open();
+      if (stream_->Read(&response)) {
+        reopening_.succeeded();
+        revision_ = response.scene_revision();
+        while (!waiting_.empty() && waiting_.front().edit().sequence() <= response.applied()) waiting_.pop_front();
+        continue;
+      }
+      const absl::Status ended = internal::to_absl(stream_->Finish());
+      stream_.reset();
+      failed_ = reopening_.wait_after(ended);
+      if (!failed_.ok()) return failed_;
+    }
+    return absl::OkStatus();
+  }
+
+  /// And writes all that waits.
+  void open() {
+    context_.emplace();
+    stream_ = connection_->scene_service()->EditScene(&*context_);
+    v1::EditSceneRequest request;
+    request.mutable_opening()->set_scene(scene_);
+    stream_->Write(request);
+    for (const v1::EditSceneRequest& waiting : waiting_) stream_->Write(waiting);
+  }
+
+  const std::shared_ptr<internal::Connection> connection_;
+  internal::Reopening reopening_;
+  const std::string scene_;
+  uint64_t sequence_ = 0;
+  uint64_t revision_ = 0;
+  std::deque<v1::EditSceneRequest> waiting_;  // sent, and not known to be applied
+  std::optional<v1::SceneEdit> group_;
+  absl::Status failed_;
+  std::optional<grpc::ClientContext> context_;
+  std::unique_ptr<grpc::ClientReaderWriter<v1::EditSceneRequest, v1::EditSceneResponse>> stream_;
+};
+
+Deformer::Deformer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Deformer::Deformer(Deformer&&) noexcept = default;
+Deformer& Deformer::operator=(Deformer&&) noexcept = default;
+Deformer::~Deformer() = default;
+
+absl::Status Deformer::set_positions(const MeshHandle& mesh, std::span<const Vec3> positions) {
+  return set_positions(mesh, {}, positions);
+}
+
+absl::Status Deformer::set_positions(const MeshHandle& mesh, std::span<const uint32_t> indices,
+                                     std::span<const Vec3> positions) {
+  v1::SceneChange change;
+  change.mutable_positions()->set_mesh(mesh.name);
+  change.mutable_positions()->mutable_indices()->Add(indices.begin(), indices.end());
+  change.mutable_positions()->set_float32(positions.data(), positions.size_bytes());
+  return impl_->add(std::move(change));
+}
+
+absl::Status Deformer::set_quantized_positions(const MeshHandle& mesh, std::span<const Vec3> positions,
+                                               const Vec3& lowest, const Vec3& highest) {
+  std::vector<uint16_t> steps;
+  steps.reserve(3 * positions.size());
+  const auto quantize = [&steps](float value, float low, float high) {
+    const double share = high > low ? (double{value} - low) / (double{high} - low) : 0;
+    steps.push_back(static_cast<uint16_t>(std::lround(65535 * std::clamp(share, 0.0, 1.0))));
+  };
+  for (const Vec3& p : positions) {
+    quantize(p.x, lowest.x, highest.x);
+    quantize(p.y, lowest.y, highest.y);
+    quantize(p.z, lowest.z, highest.z);
+  }
+  v1::SceneChange change;
+  change.mutable_positions()->set_mesh(mesh.name);
+  v1::QuantizedPositions& quantized = *change.mutable_positions()->mutable_quantized();
+  *quantized.mutable_lowest() = to_proto(lowest);
+  *quantized.mutable_highest() = to_proto(highest);
+  quantized.set_uint16(steps.data(), steps.size() * sizeof(uint16_t));
+  return impl_->add(std::move(change));
+}
+
+absl::Status Deformer::set_material(const MaterialHandle& handle, const Material& material) {
+  v1::SceneChange change;
+  v1::UpdateMaterialRequest& update = *change.mutable_material();
+  *update.mutable_material() = to_proto(material);
+  update.mutable_material()->set_name(handle.name);
+  for (const char* path : {"model", "profile", "coat", "textures"}) update.mutable_update_mask()->add_paths(path);
+  return impl_->add(std::move(change));
+}
+
+absl::Status Deformer::set_light(const LightHandle& handle, const Light& light) {
+  v1::SceneChange change;
+  v1::UpdateLightRequest& update = *change.mutable_light();
+  *update.mutable_light() = to_proto(light);
+  update.mutable_light()->set_name(handle.name);
+  update.mutable_update_mask()->add_paths(internal::kind_of(light));
+  return impl_->add(std::move(change));
+}
+
+void Deformer::begin() { impl_->begin(); }
+absl::Status Deformer::commit() { return impl_->commit(); }
+absl::StatusOr<uint64_t> Deformer::flush() { return impl_->flush(); }
+
+Deformer Scene::deform() const { return Deformer(std::make_unique<Deformer::Impl>(connection_, name_)); }
+
+}  // namespace diaphane

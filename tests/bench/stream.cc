@@ -1,0 +1,193 @@
+// A deforming scene through a server in another process: what comes back, how fast, and where the time goes.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "CLI/CLI.hpp"
+#include "diaphane/client.h"
+#include "diaphane/framing.h"
+#include "diaphane/private_server.h"
+#include "diaphane/readers.h"
+#include "nlohmann/json.hpp"
+
+namespace diaphane {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Settings {
+  std::vector<std::string> meshes = {"bunny_closed_72k.ply", "buddha_381k.ply"};
+  std::string folder = "../shared/data/meshes";
+  std::vector<std::string> sizes = {"512x512", "1280x720"};
+  int frames = 60;
+  std::string json_path;
+};
+
+double ms_since(Clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1, static_cast<size_t>(share * static_cast<double>(values.size())))];
+}
+
+/// Leaning to and fro about the lowest point.
+std::vector<Vec3> leaning(const MeshData& mesh, const Bounds& bounds, int frame) {
+  const float lean = 0.1f * std::sin(0.3f * static_cast<float>(frame));
+  std::vector<Vec3> positions = mesh.positions;
+  for (Vec3& p : positions) p.x += lean * (p.y - bounds.lowest.y);
+  return positions;
+}
+
+struct Measured {
+  std::vector<double> latency_ms, overhead_ms, encode_ms;
+  std::map<std::string, std::vector<double>> stages_ms;
+  double frames_per_second = 0;
+};
+
+/// One edit, then the frame that shows it, and so on: nothing waits for anything else.
+absl::Status measure_latency(const Scene& scene, const MeshHandle& body, const MeshData& mesh, const Bounds& bounds,
+                             const StreamOptions& options, int frames, Measured* out) {
+  FrameStream stream = scene.stream(options);
+  Deformer deformer = scene.deform();
+  for (int i = -3; i < frames; ++i) {
+    const std::vector<Vec3> positions = leaning(mesh, bounds, i);
+    const Clock::time_point begin = Clock::now();
+    if (absl::Status sent = deformer.set_positions(body, positions); !sent.ok()) return sent;
+    const absl::StatusOr<uint64_t> revision = deformer.flush();
+    if (!revision.ok()) return revision.status();
+    absl::StatusOr<StreamedFrame> frame = stream.next();
+    while (frame.ok() && frame->frame.scene_revision < *revision) frame = stream.next();
+    if (!frame.ok()) return frame.status();
+    if (i < 0) continue;
+    const double latency = ms_since(begin);
+    double stages = 0, encode = 0;
+    for (const StageTime& stage : frame->frame.stages) {
+      if (stage.stage == "queue") continue;
+      stages += stage.milliseconds;
+      if (stage.stage == "encode") encode = stage.milliseconds;
+      out->stages_ms[stage.stage].push_back(stage.milliseconds);
+    }
+    out->latency_ms.push_back(latency);
+    out->overhead_ms.push_back(latency - stages);
+    out->encode_ms.push_back(encode);
+  }
+  return absl::OkStatus();
+}
+
+/// Edits as fast as the server takes them, frames as fast as they come.
+absl::Status measure_rate(const Scene& scene, const MeshHandle& body, const MeshData& mesh, const Bounds& bounds,
+                          const StreamOptions& options, int frames, Measured* out) {
+  FrameStream stream = scene.stream(options);
+  std::atomic<bool> done{false};
+  std::thread program([&] {
+    Deformer deformer = scene.deform();
+    std::vector<std::vector<Vec3>> poses;
+    for (int i = 0; i < 8; ++i) poses.push_back(leaning(mesh, bounds, 3 * i));
+    for (size_t i = 0; !done; ++i) {
+      if (!deformer.set_positions(body, poses[i % poses.size()]).ok() || !deformer.flush().ok()) return;
+    }
+  });
+  absl::Status status;
+  Clock::time_point begin = Clock::now();
+  for (int i = -3; i < frames && status.ok(); ++i) {
+    if (i == 0) begin = Clock::now();
+    status = stream.next().status();
+  }
+  out->frames_per_second = 1000.0 * frames / ms_since(begin);
+  done = true;
+  program.join();
+  return status;
+}
+
+absl::Status run(const Settings& settings) {
+  const absl::StatusOr<PrivateServer> server = PrivateServer::start();
+  if (!server.ok()) return server.status();
+  const absl::StatusOr<Client> client = Client::connect(server->address());
+  if (!client.ok()) return client.status();
+  std::printf(
+      "Dense positions of every frame to a server in another process, JPEG (quality 80) back, marble, integral "
+      "normal,\n"
+      "medians of %d, ms. Latency: from the call that sends new positions to the frame that shows them. Way: latency\n"
+      "without the server's stages: both directions, hashing nothing, queues, and the client's own copies.\n",
+      settings.frames);
+  std::printf("%-22s %-9s | %6s | %8s %8s | %7s %7s | %7s\n", "mesh", "size", "fps", "latency", "p99", "way", "p99",
+              "encode");
+  nlohmann::json rows = nlohmann::json::array();
+  for (const std::string& name : settings.meshes) {
+    const absl::StatusOr<LoadedFile> file = read_mesh_file(settings.folder + "/" + name);
+    if (!file.ok()) return file.status();
+    const MeshData& mesh = file->meshes.front();
+    const Bounds bounds = *bounds_of(file->meshes);
+    for (const std::string& size : settings.sizes) {
+      const absl::StatusOr<Scene> scene =
+          client->create_scene({.millimetres_per_unit = 50 / (bounds.highest.y - bounds.lowest.y)});
+      if (!scene.ok()) return scene.status();
+      const auto material = scene->add_material({"marble"});
+      const auto body = scene->add_mesh(mesh, {.material = material.value_or(MaterialHandle{})});
+      if (!body.ok()) return body.status();
+      StreamOptions options;
+      options.view.size = {static_cast<uint32_t>(std::stoul(size)),
+                           static_cast<uint32_t>(std::stoul(size.substr(size.find('x') + 1)))};
+      options.view.camera = frame_camera(bounds);
+      options.view.lossless_at_rest = false;
+      const Vec3& eye = options.view.camera.eye;
+      const auto light = scene->add_light(PointLight{{eye.x + 1, eye.y + 1, eye.z}, {20000, 20000, 20000}});
+      if (!light.ok()) return light.status();
+      Measured measured;
+      absl::Status status = measure_latency(*scene, *body, mesh, bounds, options, settings.frames, &measured);
+      if (status.ok()) status = measure_rate(*scene, *body, mesh, bounds, options, settings.frames, &measured);
+      if (!status.ok()) return status;
+      if (absl::Status removed = scene->remove(); !removed.ok()) return removed;
+      std::printf("%-22s %-9s | %6.1f | %8.2f %8.2f | %7.2f %7.2f | %7.2f\n", name.c_str(), size.c_str(),
+                  measured.frames_per_second, quantile(measured.latency_ms, 0.5), quantile(measured.latency_ms, 0.99),
+                  quantile(measured.overhead_ms, 0.5), quantile(measured.overhead_ms, 0.99),
+                  quantile(measured.encode_ms, 0.5));
+      std::fflush(stdout);
+      nlohmann::json row{
+          {"mesh", name},
+          {"size", size},
+          {"frames_per_second", measured.frames_per_second},
+          {"latency_ms", {{"p50", quantile(measured.latency_ms, 0.5)}, {"p99", quantile(measured.latency_ms, 0.99)}}},
+          {"way_ms", {{"p50", quantile(measured.overhead_ms, 0.5)}, {"p99", quantile(measured.overhead_ms, 0.99)}}},
+          {"positions_bytes", {{"float32", 12 * mesh.positions.size()}, {"quantized", 6 * mesh.positions.size()}}},
+          {"stages_ms", nlohmann::json::object()}};
+      for (const auto& [stage, values] : measured.stages_ms) row["stages_ms"][stage] = quantile(values, 0.5);
+      rows.push_back(std::move(row));
+    }
+  }
+  for (const nlohmann::json& row : rows) {
+    std::printf("%s %s:", row["mesh"].get<std::string>().c_str(), row["size"].get<std::string>().c_str());
+    for (const auto& [stage, value] : row["stages_ms"].items())
+      std::printf(" %s %.2f", stage.c_str(), value.get<double>());
+    std::printf("\n");
+  }
+  if (!settings.json_path.empty()) std::ofstream(settings.json_path) << nlohmann::json{{"rows", rows}}.dump(1) << "\n";
+  return absl::OkStatus();
+}
+
+}  // namespace
+}  // namespace diaphane
+
+int main(int argc, char** argv) {
+  diaphane::Settings settings;
+  CLI::App app("Frames and latency of a deforming scene over loopback");
+  app.add_option("--meshes", settings.meshes, "files of --folder")->delimiter(',');
+  app.add_option("--folder", settings.folder, "with mesh files");
+  app.add_option("--sizes", settings.sizes, "WIDTHxHEIGHT")->delimiter(',');
+  app.add_option("--frames", settings.frames)->check(CLI::Range(1, 100000));
+  app.add_option("--json", settings.json_path, "file for the table");
+  CLI11_PARSE(app, argc, argv);
+  const absl::Status status = diaphane::run(settings);
+  if (!status.ok()) std::fprintf(stderr, "bench_stream: %s\n", std::string(status.message()).c_str());
+  return status.ok() ? 0 : 1;
+}

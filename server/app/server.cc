@@ -58,8 +58,8 @@ Server::Server(const ServerOptions& options, std::unique_ptr<session::RenderThre
     : store_(options.limits.scene),
       workers_(kUploadThreads, kMaxWaitingUploads),
       render_thread_(std::move(render_thread)),
-      scene_service_(options.limits, store_, workers_),
-      render_service_(options.limits, store_, *render_thread_),
+      scene_service_(options.limits, store_, workers_, open_streams_),
+      render_service_(options.limits, store_, *render_thread_, open_streams_),
       server_service_(kVersion, options.limits, render_thread_->info()) {}
 
 absl::StatusOr<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
@@ -116,6 +116,7 @@ void Server::stop(absl::Duration drain) {
   if (server_ == nullptr) return;
   const absl::Time deadline = absl::Now() + drain;
   server_->GetHealthCheckService()->Shutdown();
+  open_streams_.end_all();
   server_->Shutdown(absl::ToChronoTime(deadline));
   server_->Wait();
   server_.reset();

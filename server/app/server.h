@@ -10,6 +10,7 @@
 #include "grpcpp/server.h"
 #include "scene/scene_store.h"
 #include "service/limits.h"
+#include "service/open_streams.h"
 #include "service/render_service.h"
 #include "service/scene_service.h"
 #include "service/server_service.h"
@@ -52,6 +53,7 @@ class Server {
   // In the order of who borrows whom: the server ends first.
   scene::SceneStore store_;
   base::WorkerPool workers_;
+  service::OpenStreams open_streams_;
   std::unique_ptr<session::RenderThread> render_thread_;
   service::SceneService scene_service_;
   service::RenderService render_service_;

@@ -9,6 +9,25 @@
 
 namespace diaphane::service {
 
+EditStream::EditStream(scene::SceneStore& store, OpenStreams& open_streams)
+    : store_(store), open_streams_(open_streams) {
+  id_ = open_streams_.add([this] {
+    const absl::MutexLock lock(&mutex_);
+    if (!ending_.has_value()) ending_ = absl::UnavailableError("the server is stopping");
+    if (!writing_) acknowledge();
+  });
+  StartRead(&request_);
+}
+
+void EditStream::OnDone() {
+  open_streams_.remove(id_);
+  {
+    // Whoever was here last has let go.
+    const absl::MutexLock lock(&mutex_);
+  }
+  delete this;
+}
+
 void EditStream::OnReadDone(bool ok) {
   const absl::Status status = ok ? take(request_) : absl::OkStatus();
   if (ok && status.ok()) return StartRead(&request_);

@@ -8,6 +8,7 @@
 #include "absl/synchronization/mutex.h"
 #include "diaphane/v1/scene_service.grpc.pb.h"
 #include "scene/scene_store.h"
+#include "service/open_streams.h"
 
 namespace diaphane::service {
 
@@ -15,12 +16,12 @@ namespace diaphane::service {
 /// held back by its own stream. Finishes exactly once. Deletes itself.
 class EditStream final : public grpc::ServerBidiReactor<v1::EditSceneRequest, v1::EditSceneResponse> {
  public:
-  explicit EditStream(scene::SceneStore& store) : store_(store) { StartRead(&request_); }
+  EditStream(scene::SceneStore& store, OpenStreams& open_streams);
 
   void OnReadDone(bool ok) override;
   void OnWriteDone(bool ok) override;
   void OnCancel() override;
-  void OnDone() override { delete this; }
+  void OnDone() override;
 
  private:
   absl::Status take(const v1::EditSceneRequest& request);
@@ -29,6 +30,8 @@ class EditStream final : public grpc::ServerBidiReactor<v1::EditSceneRequest, v1
   void finish(const absl::Status& status) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   scene::SceneStore& store_;
+  OpenStreams& open_streams_;
+  uint64_t id_ = 0;  ///< in open_streams_
   // Of the reading thread.
   v1::EditSceneRequest request_;
   std::string scene_;

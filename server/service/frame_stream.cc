@@ -18,13 +18,18 @@ constexpr absl::Duration kRetry = absl::Milliseconds(20);  // when the render qu
 
 }  // namespace
 
-FrameStream::FrameStream(scene::SceneStore& store, session::RenderThread& render_thread, const ServiceLimits& limits)
-    : store_(store), render_thread_(render_thread), limits_(limits) {
+FrameStream::FrameStream(scene::SceneStore& store, session::RenderThread& render_thread, const ServiceLimits& limits,
+                         OpenStreams& open_streams)
+    : store_(store), render_thread_(render_thread), limits_(limits), open_streams_(open_streams) {
   {
     const absl::MutexLock lock(&link_->mutex);
     link_->reactor = this;
     wake_at(written_at_ + kHeartbeat);
   }
+  id_ = open_streams_.add([this] {
+    const absl::MutexLock lock(&link_->mutex);
+    finish(absl::UnavailableError("the server is stopping"));
+  });
   StartRead(&request_);
 }
 
@@ -52,6 +57,7 @@ void FrameStream::OnCancel() {
 }
 
 void FrameStream::OnDone() {
+  open_streams_.remove(id_);
   watch_.reset();
   {
     const std::shared_ptr<Link> link = link_;

@@ -14,6 +14,7 @@
 #include "scene/scene_store.h"
 #include "service/convert/stream.h"
 #include "service/limits.h"
+#include "service/open_streams.h"
 #include "session/render_thread.h"
 
 namespace diaphane::service {
@@ -23,7 +24,8 @@ namespace diaphane::service {
 /// once: at the client's end, its cancellation, or an error. Deletes itself.
 class FrameStream final : public grpc::ServerBidiReactor<v1::StreamFramesRequest, v1::StreamFramesResponse> {
  public:
-  FrameStream(scene::SceneStore& store, session::RenderThread& render_thread, const ServiceLimits& limits);
+  FrameStream(scene::SceneStore& store, session::RenderThread& render_thread, const ServiceLimits& limits,
+              OpenStreams& open_streams);
 
   void OnReadDone(bool ok) override;
   void OnWriteDone(bool ok) override;
@@ -72,6 +74,8 @@ class FrameStream final : public grpc::ServerBidiReactor<v1::StreamFramesRequest
   scene::SceneStore& store_;
   session::RenderThread& render_thread_;
   const ServiceLimits& limits_;
+  OpenStreams& open_streams_;
+  uint64_t id_ = 0;  ///< in open_streams_
   const std::shared_ptr<Link> link_ = std::make_shared<Link>();
 
   v1::StreamFramesRequest request_;

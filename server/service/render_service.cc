@@ -90,7 +90,7 @@ grpc::ServerWriteReactor<v1::RenderFrameWithProgressResponse>* RenderService::Re
 
 grpc::ServerBidiReactor<v1::StreamFramesRequest, v1::StreamFramesResponse>* RenderService::StreamFrames(
     grpc::CallbackServerContext*) {
-  return new FrameStream(store_, render_thread_, limits_);
+  return new FrameStream(store_, render_thread_, limits_, open_streams_);
 }
 
 }  // namespace diaphane::service

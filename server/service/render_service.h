@@ -3,6 +3,7 @@
 #include "diaphane/v1/render_service.grpc.pb.h"
 #include "scene/scene_store.h"
 #include "service/limits.h"
+#include "service/open_streams.h"
 #include "session/render_thread.h"
 
 namespace diaphane::service {
@@ -10,8 +11,9 @@ namespace diaphane::service {
 /// Frames of scenes. Thread-safe. What it borrows outlives it, and the server that serves it.
 class RenderService final : public v1::RenderService::CallbackService {
  public:
-  RenderService(const ServiceLimits& limits, scene::SceneStore& store, session::RenderThread& render_thread)
-      : limits_(limits), store_(store), render_thread_(render_thread) {}
+  RenderService(const ServiceLimits& limits, scene::SceneStore& store, session::RenderThread& render_thread,
+                OpenStreams& open_streams)
+      : limits_(limits), store_(store), render_thread_(render_thread), open_streams_(open_streams) {}
 
  private:
   grpc::ServerUnaryReactor* RenderFrame(grpc::CallbackServerContext* context, const v1::RenderFrameRequest* request,
@@ -25,6 +27,7 @@ class RenderService final : public v1::RenderService::CallbackService {
   const ServiceLimits limits_;
   scene::SceneStore& store_;
   session::RenderThread& render_thread_;
+  OpenStreams& open_streams_;
 };
 
 }  // namespace diaphane::service

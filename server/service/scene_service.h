@@ -4,6 +4,7 @@
 #include "diaphane/v1/scene_service.grpc.pb.h"
 #include "scene/scene_store.h"
 #include "service/limits.h"
+#include "service/open_streams.h"
 #include "service/reply_memory.h"
 
 namespace diaphane::service {
@@ -12,8 +13,13 @@ namespace diaphane::service {
 class SceneService final : public v1::SceneService::CallbackService {
  public:
   /// `workers` hash, check and index what was uploaded: too long for a gRPC thread.
-  SceneService(const ServiceLimits& limits, scene::SceneStore& store, base::WorkerPool& workers)
-      : limits_(limits), store_(store), workers_(workers), replies_(limits.max_remembered_replies) {}
+  SceneService(const ServiceLimits& limits, scene::SceneStore& store, base::WorkerPool& workers,
+               OpenStreams& open_streams)
+      : limits_(limits),
+        store_(store),
+        workers_(workers),
+        open_streams_(open_streams),
+        replies_(limits.max_remembered_replies) {}
 
  private:
   template <typename Request>
@@ -63,6 +69,7 @@ class SceneService final : public v1::SceneService::CallbackService {
   const ServiceLimits limits_;
   scene::SceneStore& store_;
   base::WorkerPool& workers_;
+  OpenStreams& open_streams_;
   ReplyMemory replies_;
 };
 

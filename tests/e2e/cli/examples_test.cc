@@ -44,6 +44,11 @@ TEST_F(Examples, DeformShowsAnotherShapeInEveryStep) {
   }
 }
 
+TEST_F(Examples, LiveShowsTheLastPoseAtRest) {
+  expect_success("example_live", {"cube.obj", "."});
+  EXPECT_THAT(picture("at_rest.png"), StartsWith(kPng));
+}
+
 TEST_F(Examples, LightAndMaterialChangeThePicture) {
   expect_success("example_light_and_material", {"cube.obj", "before.exr", "after.exr"});
   EXPECT_THAT(picture("before.exr"), StartsWith(kExr));

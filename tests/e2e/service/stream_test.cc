@@ -257,6 +257,25 @@ TEST_F(StreamTest, CancelledWhileAFrameIsDrawnLeavesNothingBehind) {
   EXPECT_TRUE(end(*stream).ok());
 }
 
+TEST_F(StreamTest, IsToldThatTheServerStopsAndDoesNotHoldItUp) {
+  grpc::ClientContext context, of_edits;
+  const auto stream = open(&context, view(1), 8);
+  next(*stream);
+  const auto edits = scenes_->EditScene(&of_edits);
+  v1::EditSceneRequest request;
+  request.mutable_opening()->set_scene(scene_);
+  edits->Write(request);
+  const auto begin = std::chrono::steady_clock::now();
+  std::thread stopper([&] { server_->stop(absl::Seconds(60)); });
+  expect_refused(*stream, grpc::StatusCode::UNAVAILABLE, "");
+  v1::EditSceneResponse response;
+  while (edits->Read(&response)) {
+  }
+  EXPECT_EQ(edits->Finish().error_code(), grpc::StatusCode::UNAVAILABLE);
+  stopper.join();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+}
+
 TEST_F(StreamTest, ManyViewersOfAChangingSceneAllSeeItsEnd) {
   std::vector<std::future<uint64_t>> seen;
   const uint64_t last = get_scene(scene_).revision() + 60;

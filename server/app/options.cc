@@ -19,6 +19,7 @@ void add_limits(CLI::App& app, service::ServiceLimits& limits, uint64_t& mesh_mi
   add("--max-scenes", limits.scene.max_scenes, "scenes");
   add("--max-meshes", limits.scene.max_meshes_per_scene, "meshes of a scene");
   add("--max-materials", limits.scene.max_materials_per_scene, "materials of a scene");
+  add("--max-textures", limits.scene.max_textures_per_scene, "textures of a scene");
   add("--max-lights", limits.scene.max_lights_per_scene, "lights of a scene");
   add("--max-vertices", limits.scene.max_vertices_per_mesh, "vertices of a mesh");
   add("--max-triangles", limits.scene.max_triangles_per_mesh, "triangles of a mesh");

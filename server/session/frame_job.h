@@ -48,10 +48,12 @@ struct FrameTask {
 /// A task on its way. Thread-safe.
 class FrameJob {
  public:
-  explicit FrameJob(FrameTask task) : task_(std::move(task)) {}
+  explicit FrameJob(FrameTask task) : task_(std::move(task)), scene_(task_.request.scene->name) {}
 
   const render::FrameRequest& request() const { return task_.request; }
   const encode::Encoding& encoding() const { return task_.encoding; }
+  /// Its name, which no choose() changes.
+  const std::string& scene() const { return scene_; }
   absl::Time submitted() const { return submitted_; }
 
   /// The renderer begins. Once, before expires() is asked from another thread, which the caller sees to.
@@ -83,6 +85,7 @@ class FrameJob {
 
  private:
   FrameTask task_;
+  const std::string scene_;
   const absl::Time submitted_ = absl::Now();
   absl::Time limit_ = absl::InfiniteFuture();
   std::atomic<bool> cancelled_{false};

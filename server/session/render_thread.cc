@@ -107,8 +107,11 @@ RenderThread::JobPtr RenderThread::next_job() {
   absl::MutexLock lock(&mutex_);
   while (!quit_ && (queued_.empty() || encoding_ >= options_.max_encoding_frames)) changed_.Wait(&mutex_);
   if (quit_) return nullptr;
-  JobPtr job = queued_.front();
-  queued_.erase(queued_.begin());
+  std::vector<const std::string*> scenes;
+  for (const JobPtr& waiting : queued_) scenes.push_back(&waiting->scene());
+  const auto chosen = queued_.begin() + static_cast<ptrdiff_t>(shares_.choose(scenes));
+  JobPtr job = *chosen;
+  queued_.erase(chosen);
   job->begin();
   started_.push_back(job);
   changed_.SignalAll();  // its time limit runs
@@ -118,8 +121,13 @@ RenderThread::JobPtr RenderThread::next_job() {
 void RenderThread::draw(render::FrameRenderer& renderer, const JobPtr& job) {
   const double queued_ms = milliseconds_since(job->submitted());
   if (!job->choose()) return end(job, absl::CancelledError("the frame is not wanted any more"));
+  const absl::Time begin = absl::Now();
   absl::StatusOr<render::Frame> frame =
       without_exceptions([&] { return renderer.render(job->request(), job->cancelled()); });
+  {
+    absl::MutexLock lock(&mutex_);
+    shares_.book(job->scene(), milliseconds_since(begin));
+  }
   if (job->cancelled()) return;  // Whoever cancelled it ends it.
   if (!frame.ok()) return end(job, frame.status());
   frame->stages.insert(frame->stages.begin(), {"queue", queued_ms, true});

@@ -11,6 +11,7 @@
 #include "absl/synchronization/mutex.h"
 #include "base/worker_pool.h"
 #include "render/frame.h"
+#include "session/fair_shares.h"
 #include "session/frame_job.h"
 
 namespace diaphane::session {
@@ -25,8 +26,8 @@ struct RenderThreadOptions {
   size_t max_encoding_frames = 4;
 };
 
-/// Owns a renderer, the one thread that may call it, and threads that encode what it drew. Jobs are drawn in the order
-/// in which they came. Thread-safe.
+/// Owns a renderer, the one thread that may call it, and threads that encode what it drew. Scenes get equal shares of
+/// the renderer's time; the jobs of one are drawn in the order in which they came. Thread-safe.
 class RenderThread {
  public:
   /// Returns when the renderer is made, or the factory's error.
@@ -74,6 +75,7 @@ class RenderThread {
   absl::Mutex mutex_;
   absl::CondVar changed_;  // signalled when anything below changes
   std::vector<JobPtr> queued_ ABSL_GUARDED_BY(mutex_);
+  FairShares shares_ ABSL_GUARDED_BY(mutex_);
   std::vector<JobPtr> started_ ABSL_GUARDED_BY(mutex_);  // drawn or encoded right now, and wanted
   size_t encoding_ ABSL_GUARDED_BY(mutex_) = 0;          // frames, wanted or not
   bool stopping_ ABSL_GUARDED_BY(mutex_) = false;        // no more jobs come

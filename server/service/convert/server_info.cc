@@ -22,6 +22,7 @@ void to_proto(const ServiceLimits& limits, v1::Limits& message) {
   message.set_max_meshes_per_scene(limits.scene.max_meshes_per_scene);
   message.set_max_lights_per_scene(limits.scene.max_lights_per_scene);
   message.set_max_materials_per_scene(limits.scene.max_materials_per_scene);
+  message.set_max_textures_per_scene(limits.scene.max_textures_per_scene);
   message.set_max_mesh_bytes(limits.scene.max_mesh_bytes);
   message.set_max_chunk_bytes(kMaxChunkBytes);
   message.set_max_queued_frames(limits.max_queued_frames);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <future>
+#include <mutex>
 
 #include "absl/time/clock.h"
 #include "tests/fakes/fake_renderer.h"
@@ -95,6 +96,68 @@ TEST_F(RenderThreadTest, DrawsInTheOrderOfSubmission) {
   }
   for (Answer& answer : answers) answer.wait();
   EXPECT_THAT(order, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
+}
+
+TEST(FairSharesTest, GiveALightOneHalfOfTheTimeBesideAHeavyOne) {
+  FairShares shares;
+  const std::string light = "light", heavy = "heavy";
+  const std::string* const both[] = {&heavy, &light};
+  double light_ms = 0, heavy_ms = 0;
+  for (int i = 0; i < 1020; ++i) {
+    if (shares.choose(both) == 1) {
+      shares.book(light, 1);
+      light_ms += 1;
+    } else {
+      shares.book(heavy, 50);
+      heavy_ms += 50;
+    }
+  }
+  EXPECT_NEAR(light_ms / (light_ms + heavy_ms), 0.5, 0.01);
+}
+
+TEST(FairSharesTest, SaveNothingForWhoDidNotAsk) {
+  FairShares shares;
+  const std::string busy = "busy", late = "late";
+  const std::string* const one[] = {&busy};
+  for (int i = 0; i < 100; ++i) {
+    shares.choose(one);
+    shares.book(busy, 10);
+  }
+  const std::string* const both[] = {&busy, &late};
+  int turns_of_late = 0;
+  for (int i = 0; i < 20; ++i) {
+    const bool is_late = shares.choose(both) == 1;
+    shares.book(is_late ? late : busy, 10);
+    turns_of_late += is_late ? 1 : 0;
+  }
+  EXPECT_NEAR(turns_of_late, 10, 1);
+}
+
+TEST_F(RenderThreadTest, DrawsTheSceneThatHadLessOfItsTimeFirst) {
+  std::mutex mutex;
+  std::vector<std::string> drawn;
+  const auto named = [&](const std::string& name, Answer& answer) {
+    FrameTask next = task(answer);
+    auto scene = std::make_shared<scene::SceneSnapshot>();
+    scene->name = name;
+    next.request.scene = std::move(scene);
+    next.latest = [&, name](render::FrameRequest&) {
+      const std::lock_guard lock(mutex);
+      drawn.push_back(name);
+      return true;
+    };
+    return next;
+  };
+  Answer answers[5];
+  const std::string names[] = {"heavy", "heavy", "heavy", "light", "light"};
+  control_->hold();
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(thread_->submit(named(names[i], answers[i])).ok());
+  control_->wait_for_started(1);
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  control_->release();
+  for (Answer& answer : answers) EXPECT_TRUE(answer.get().ok());
+  // The first had 30 ms: both light ones come before the next.
+  EXPECT_THAT(drawn, ElementsAre("heavy", "light", "light", "heavy", "heavy"));
 }
 
 TEST_F(RenderThreadTest, RefusesAJobWhenTheQueueIsFull) {

@@ -19,7 +19,8 @@ class FrameStream::Impl {
       : connection_(std::move(connection)),
         reopening_(connection_->options()),
         scene_(std::move(scene)),
-        frames_in_flight_(options.frames_in_flight) {
+        frames_in_flight_(options.frames_in_flight),
+        every_revision_(options.every_revision) {
     set_view(options.view);
   }
 
@@ -39,6 +40,8 @@ class FrameStream::Impl {
     *view_.mutable_moving() = std::move(*request.mutable_encoding());
     view_.set_lossless_at_rest(view.lossless_at_rest);
     view_.set_min_revision(view.min_revision);
+    view_.set_frames_per_second(view.frames_per_second);
+    view_.set_bytes_per_second(view.bytes_per_second);
     if (stream_ != nullptr) {
       v1::StreamFramesRequest part;
       *part.mutable_view() = view_;
@@ -54,11 +57,14 @@ class FrameStream::Impl {
       while (stream_->Read(&response)) {
         reopening_.succeeded();
         if (!response.has_frame()) continue;
+        came_ = true;
         grant_one();
         v1::StreamedFrame& frame = *response.mutable_frame();
-        return StreamedFrame{from_proto(std::move(*frame.mutable_frame())), frame.view_sequence(), frame.at_rest()};
+        return StreamedFrame{from_proto(std::move(*frame.mutable_frame())), frame.view_sequence(), frame.at_rest(),
+                             frame.reduced()};
       }
       const absl::Status ended = finish();
+      if (every_revision_ && came_) return ended;
       if (absl::Status again = reopening_.wait_after(ended); !again.ok()) return again;
     }
   }
@@ -80,6 +86,7 @@ class FrameStream::Impl {
     part.mutable_opening()->set_scene(scene_);
     *part.mutable_opening()->mutable_view() = view_;
     part.mutable_opening()->set_credits(frames_in_flight_);
+    part.mutable_opening()->set_every_revision(every_revision_);
     stream_->Write(part);
     return absl::OkStatus();
   }
@@ -102,7 +109,9 @@ class FrameStream::Impl {
   internal::Reopening reopening_;
   const std::string scene_;
   const uint32_t frames_in_flight_;
-  std::mutex mutex_;  // of what is written, and of the pointers; reading needs none
+  const bool every_revision_;
+  bool came_ = false;  // a frame
+  std::mutex mutex_;   // of what is written, and of the pointers; reading needs none
   v1::StreamView view_;
   std::optional<grpc::ClientContext> context_;
   std::unique_ptr<grpc::ClientReaderWriter<v1::StreamFramesRequest, v1::StreamFramesResponse>> stream_;

@@ -12,9 +12,20 @@ namespace {
 
 constexpr uint32_t kMostCredits = 64;
 constexpr size_t kMostFlights = 3;
-constexpr absl::Duration kRest = absl::Milliseconds(150);
+constexpr size_t kMostRevisions = 64;
+constexpr absl::Duration kSharpAfter = absl::Milliseconds(60);
+constexpr absl::Duration kLosslessAfter = absl::Milliseconds(150);
 constexpr absl::Duration kHeartbeat = absl::Seconds(5);
 constexpr absl::Duration kRetry = absl::Milliseconds(20);  // when the render queue is full
+
+/// What the renderer itself took.
+double work_ms(const session::EncodedFrame& frame) {
+  double sum = 0;
+  for (const render::StageTime& stage : frame.stages) {
+    if (stage.stage != "queue" && stage.stage != "encode") sum += stage.milliseconds;
+  }
+  return sum;
+}
 
 }  // namespace
 
@@ -83,6 +94,7 @@ absl::Status FrameStream::open(const v1::StreamOpening& opening) {
   if (watch_ != nullptr) return base::invalid_field("part", "one opening", "a second");
   {
     const absl::MutexLock lock(&link_->mutex);
+    every_revision_ = opening.every_revision();
     if (absl::Status taken = take_view(opening.view()); !taken.ok()) return taken;
     if (opening.credits() != 0) {
       if (absl::Status taken = take_credits(opening.credits()); !taken.ok()) return taken;
@@ -104,7 +116,14 @@ absl::Status FrameStream::take_view(const v1::StreamView& message) {
   }
   absl::StatusOr<StreamView> view = from_proto(message, limits_.max_pixels);
   if (!view.ok()) return view.status();
+  if (every_revision_ && view->aim != session::PaceAim{}) {
+    return base::invalid_field(view->aim.frames_per_second > 0 ? "frames_per_second" : "bytes_per_second",
+                               "0 with every_revision",
+                               std::max(view->aim.frames_per_second, view->aim.bytes_per_second));
+  }
   view_ = *std::move(view);
+  pace_.set_aim(view_->aim);
+  std::erase_if(revisions_, [&](const scene::SnapshotPtr& snapshot) { return !shows(*snapshot); });
   changed_at_ = absl::Now();
   return absl::OkStatus();
 }
@@ -122,13 +141,30 @@ void FrameStream::see(const scene::SnapshotPtr& snapshot) {
   if (snapshot == nullptr) return finish(absl::NotFoundError("scene: was deleted"));
   snapshot_ = snapshot;
   changed_at_ = absl::Now();
+  if (every_revision_ && shows(*snapshot)) {
+    revisions_.push_back(snapshot);
+    if (revisions_.size() > kMostRevisions) {
+      return finish(base::field_error(absl::StatusCode::kResourceExhausted,
+                                      {"every_revision", fmt::format("{} that wait", revisions_.size()),
+                                       fmt::format("at most {}", kMostRevisions)}));
+    }
+  }
   advance();
 }
 
+bool FrameStream::shows(const scene::SceneSnapshot& snapshot) const {
+  return view_.has_value() && !snapshot.meshes.empty() && snapshot.revision >= view_->min_revision;
+}
+
+scene::SnapshotPtr FrameStream::next_snapshot() const {
+  if (!revisions_.empty()) return revisions_.front();
+  return snapshot_ != nullptr && shows(*snapshot_) ? snapshot_ : nullptr;
+}
+
 std::optional<FrameStream::Shown> FrameStream::wanted() const {
-  if (!view_.has_value() || snapshot_ == nullptr || snapshot_->meshes.empty()) return std::nullopt;
-  if (snapshot_->revision < view_->min_revision) return std::nullopt;
-  return Shown{snapshot_->revision, view_->sequence, false};
+  const scene::SnapshotPtr next = next_snapshot();
+  if (next == nullptr) return std::nullopt;
+  return Shown{next->revision, view_->sequence, Rest::kMoving};
 }
 
 /// Begins what can be begun.
@@ -136,22 +172,30 @@ void FrameStream::advance() {
   const std::optional<Shown> newest = wanted();
   if (closing_ || !newest.has_value()) return;
   const bool one_waits = std::any_of(flights_.begin(), flights_.end(), [](const auto& f) { return !f->shown; });
-  const size_t promised = flights_.size() + (ready_.has_value() ? 1 : 0);
+  const size_t promised = flights_.size() + ready_.size();
   if (one_waits || flights_.size() >= kMostFlights || promised >= credits_) return;
-  if (*newest > begun_) return start(false);
-  if (!view_->lossless_at_rest || begun_.at_rest || promised > 0) return;
-  if (absl::Now() - changed_at_ >= kRest) return start(true);
-  wake_at(changed_at_ + kRest);
+  if (*newest <= begun_) return promised == 0 ? advance_at_rest() : void();
+  const absl::Time now = absl::Now();
+  if (now < pace_.next_start()) return wake_at(pace_.next_start());
+  pace_.began(now);
+  start(Rest::kMoving);
 }
 
-void FrameStream::start(bool at_rest) {
-  const auto flight = std::make_shared<Flight>(Flight{at_rest, {}, {}});
+void FrameStream::advance_at_rest() {
+  const bool sharpen = begun_reduced_ && begun_.rest == Rest::kMoving;
+  if (!sharpen && (!view_->lossless_at_rest || begun_.rest == Rest::kLossless)) return;
+  const absl::Time due = changed_at_ + (sharpen ? kSharpAfter : kLosslessAfter);
+  if (absl::Now() < due) return wake_at(due);
+  start(sharpen ? Rest::kSharp : Rest::kLossless);
+}
+
+void FrameStream::start(Rest rest) {
+  const auto flight = std::make_shared<Flight>(Flight{rest, absl::Now()});
   session::FrameTask task = view_->moving;
-  if (at_rest) task.encoding = {.format = encode::ImageFormat::kPng};
-  task.request.scene = snapshot_;
-  task.latest = [link = link_, flight](render::FrameRequest& request) {
+  task.request.scene = next_snapshot();
+  task.latest = [link = link_, flight](render::FrameRequest& request, encode::Encoding& encoding) {
     const absl::MutexLock lock(&link->mutex);
-    return link->reactor != nullptr && link->reactor->choose(*flight, request);
+    return link->reactor != nullptr && link->reactor->choose(*flight, request, encoding);
   };
   task.done = [link = link_, flight](absl::StatusOr<session::EncodedFrame> frame) {
     const absl::MutexLock lock(&link->mutex);
@@ -169,42 +213,60 @@ void FrameStream::start(bool at_rest) {
 }
 
 /// On the render thread, as the frame's turn comes: whether it is still wanted, and what it shows.
-bool FrameStream::choose(Flight& flight, render::FrameRequest& request) {
+bool FrameStream::choose(Flight& flight, render::FrameRequest& request, encode::Encoding& encoding) {
   const std::optional<Shown> newest = wanted();
   if (closing_ || !newest.has_value()) return false;
-  const bool is_new = *newest > begun_;
-  if (flight.at_rest ? is_new : !is_new) return false;
-  const render::PixelFormat format = request.format;
+  const bool moving = flight.rest == Rest::kMoving;
+  if (moving != (*newest > begun_)) return false;
   request = view_->moving.request;
-  request.format = format;
-  request.scene = snapshot_;
-  flight.shown = begun_ = Shown{newest->revision, newest->view_sequence, flight.at_rest};
+  request.scene = next_snapshot();
+  encoding = view_->moving.encoding;
+  if (flight.rest == Rest::kLossless) encoding = {.format = encode::ImageFormat::kPng};
+  if (moving) begun_reduced_ = flight.reduced = pace_.reduce(request, encoding);
+  if (!revisions_.empty()) revisions_.pop_front();
+  flight.shown = begun_ = Shown{newest->revision, newest->view_sequence, flight.rest};
   advance();
   return true;
 }
 
-void FrameStream::end(const std::shared_ptr<Flight>& flight, absl::StatusOr<session::EncodedFrame> frame) {
-  std::erase(flights_, flight);
-  if (!frame.ok() && !absl::IsCancelled(frame.status())) return finish(frame.status());
-  if (frame.ok() && *flight->shown > sent_ && (!ready_.has_value() || *flight->shown > ready_->first)) {
-    ready_.emplace(*flight->shown, *std::move(frame));
-    write_next();
+void FrameStream::end(const FlightPtr& flight, absl::StatusOr<session::EncodedFrame> frame) {
+  if (!frame.ok()) {
+    std::erase(flights_, flight);
+    if (!absl::IsCancelled(frame.status())) return finish(frame.status());
+    return advance();
   }
+  if (flight->rest == Rest::kMoving) {
+    pace_.moved({flight->began, absl::Now(), work_ms(*frame), frame->bytes.size()});
+  }
+  flight->frame = *std::move(frame);
+  if (every_revision_) {
+    while (!flights_.empty() && flights_.front()->frame.has_value()) {
+      ready_.push_back(flights_.front());
+      flights_.erase(flights_.begin());
+    }
+  } else {
+    std::erase(flights_, flight);
+    if (*flight->shown > sent_ && (ready_.empty() || *flight->shown > *ready_.front()->shown)) ready_.assign(1, flight);
+  }
+  write_next();
   advance();
 }
 
 void FrameStream::write_next() {
-  if (writing_ || closing_ || !ready_.has_value() || credits_ == 0) return;
+  if (writing_ || closing_ || ready_.empty() || credits_ == 0) return;
   --credits_;
-  auto [shown, frame] = *std::exchange(ready_, std::nullopt);
-  sent_ = shown;
+  const FlightPtr flight = ready_.front();
+  ready_.pop_front();
+  sent_ = *flight->shown;
   message_.Clear();
   v1::StreamedFrame& out = *message_.mutable_frame();
-  to_proto(std::move(frame), *out.mutable_frame());
-  out.set_view_sequence(shown.view_sequence);
-  out.set_at_rest(shown.at_rest);
+  to_proto(*std::move(flight->frame), *out.mutable_frame());
+  out.set_view_sequence(sent_.view_sequence);
+  out.set_at_rest(sent_.rest == Rest::kLossless);
+  out.set_reduced(flight->reduced);
   writing_ = true;
   written_at_ = absl::Now();
+  pace_.sent(written_at_, out.frame().image().size());
   StartWrite(&message_);
 }
 
@@ -244,7 +306,8 @@ void FrameStream::finish(const absl::Status& status) {
     return;
   }
   finished_ = true;
-  ready_.reset();
+  ready_.clear();
+  revisions_.clear();
   Finish(to_grpc(status));
 }
 

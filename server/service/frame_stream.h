@@ -1,9 +1,9 @@
 // Frames as a scene changes, as a stream.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
@@ -15,13 +15,14 @@
 #include "service/convert/stream.h"
 #include "service/limits.h"
 #include "service/open_streams.h"
+#include "session/frame_pace.h"
 #include "session/render_thread.h"
 
 namespace diaphane::service {
 
 /// One call of StreamFrames. At most three frames of it are on their way: one waits, and shows what is newest when its
-/// turn comes, one is drawn, one is encoded. Of what waits to be written only the newest is kept. Finishes exactly
-/// once: at the client's end, its cancellation, or an error. Deletes itself.
+/// turn comes, one is drawn, one is encoded. Of what waits to be written only the newest is kept; with every revision,
+/// all in order. Finishes exactly once: at the client's end, its cancellation, or an error. Deletes itself.
 class FrameStream final : public grpc::ServerBidiReactor<v1::StreamFramesRequest, v1::StreamFramesResponse> {
  public:
   FrameStream(scene::SceneStore& store, session::RenderThread& render_thread, const ServiceLimits& limits,
@@ -39,18 +40,24 @@ class FrameStream final : public grpc::ServerBidiReactor<v1::StreamFramesRequest
     FrameStream* reactor ABSL_GUARDED_BY(mutex);  ///< null once it is gone
     std::optional<grpc::Alarm> alarm ABSL_GUARDED_BY(mutex);
   };
+  /// A frame while things change, then one as it was asked for, then a lossless one.
+  enum class Rest { kMoving, kSharp, kLossless };
   /// What a frame shows; revisions and views only grow.
   struct Shown {
     uint64_t revision = 0;
     uint64_t view_sequence = 0;
-    bool at_rest = false;
+    Rest rest = Rest::kMoving;
     auto operator<=>(const Shown&) const = default;
   };
   struct Flight {
-    bool at_rest = false;
-    std::optional<Shown> shown;  ///< once it is being drawn
-    std::weak_ptr<session::FrameJob> job;
+    Rest rest = Rest::kMoving;
+    absl::Time began;
+    std::optional<Shown> shown{};  ///< once it is being drawn
+    bool reduced = false;
+    std::weak_ptr<session::FrameJob> job{};
+    std::optional<session::EncodedFrame> frame{};  ///< once it is made
   };
+  using FlightPtr = std::shared_ptr<Flight>;
 
   absl::Status take(const v1::StreamFramesRequest& request);
   absl::Status open(const v1::StreamOpening& opening);
@@ -60,12 +67,15 @@ class FrameStream final : public grpc::ServerBidiReactor<v1::StreamFramesRequest
   absl::Status take_view(const v1::StreamView& message);
   absl::Status take_credits(uint32_t credits);
   void see(const scene::SnapshotPtr& snapshot);
-  /// What is newest; nothing while it cannot be shown.
+  bool shows(const scene::SceneSnapshot& snapshot) const;
+  /// The snapshot to show next; null while there is none.
+  scene::SnapshotPtr next_snapshot() const;
   std::optional<Shown> wanted() const;
   void advance();
-  void start(bool at_rest);
-  bool choose(Flight& flight, render::FrameRequest& request);
-  void end(const std::shared_ptr<Flight>& flight, absl::StatusOr<session::EncodedFrame> frame);
+  void advance_at_rest();
+  void start(Rest rest);
+  bool choose(Flight& flight, render::FrameRequest& request, encode::Encoding& encoding);
+  void end(const FlightPtr& flight, absl::StatusOr<session::EncodedFrame> frame);
   void write_next();
   void wake_at(absl::Time due);
   void at_alarm();
@@ -83,11 +93,15 @@ class FrameStream final : public grpc::ServerBidiReactor<v1::StreamFramesRequest
   std::shared_ptr<const scene::SceneStore::Watcher> watch_;
   scene::SnapshotPtr snapshot_;
   std::optional<StreamView> view_;
+  bool every_revision_ = false;
+  std::deque<scene::SnapshotPtr> revisions_;  ///< where every one is wanted: those to be drawn
   uint32_t credits_ = 0;
-  std::vector<std::shared_ptr<Flight>> flights_;
-  std::optional<std::pair<Shown, session::EncodedFrame>> ready_;  ///< waits to be written
-  Shown begun_;                                                   ///< the newest that was ever drawn
-  Shown sent_;                                                    ///< the newest that was ever written
+  std::vector<FlightPtr> flights_;  ///< in the order in which they began
+  std::deque<FlightPtr> ready_;     ///< wait to be written
+  Shown begun_;                     ///< the newest that was ever drawn
+  bool begun_reduced_ = false;
+  Shown sent_;  ///< the newest that was ever written
+  session::FramePace pace_;
   absl::Time changed_at_ = absl::InfinitePast();
   absl::Time written_at_ = absl::Now();
   absl::Time wakes_at_ = absl::InfiniteFuture();

@@ -17,10 +17,6 @@ absl::StatusOr<std::string> encode_pixels(const render::Frame& frame, const enco
 
 }  // namespace
 
-render::PixelFormat pixel_format_for(encode::ImageFormat format) {
-  return format == encode::ImageFormat::kExr ? render::PixelFormat::kLinearFloat : render::PixelFormat::kSrgb8;
-}
-
 absl::StatusOr<EncodedFrame> encode_frame(render::Frame frame, const encode::Encoding& encoding) {
   const absl::Time start = absl::Now();
   absl::StatusOr<std::string> bytes = encode_pixels(frame, encoding);

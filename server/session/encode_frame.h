@@ -7,9 +7,6 @@
 
 namespace diaphane::session {
 
-/// The pixels that an image format is made of.
-render::PixelFormat pixel_format_for(encode::ImageFormat format);
-
 /// Encodes `frame` and adds the stage "encode". INTERNAL when the frame's pixels are not of the format's kind.
 /// Thread-safe.
 absl::StatusOr<EncodedFrame> encode_frame(render::Frame frame, const encode::Encoding& encoding);

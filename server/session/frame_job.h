@@ -38,9 +38,9 @@ struct FrameTask {
   /// How long it may take from when the renderer begins; then it ends with DEADLINE_EXCEEDED, naming `limit_field`.
   absl::Duration time_limit = absl::InfiniteDuration();
   std::string_view limit_field;
-  /// Where given, called on the render thread as the frame's turn comes; may change all of the request but its format.
+  /// Where given, called on the render thread as the frame's turn comes; may change the request and the encoding.
   /// False: the frame is not wanted any more, and ends with CANCELLED. It must be quick.
-  std::function<bool(render::FrameRequest&)> latest{};
+  std::function<bool(render::FrameRequest&, encode::Encoding&)> latest{};
   /// Called exactly once, on whatever thread ends the job. It must not block.
   std::function<void(absl::StatusOr<EncodedFrame>)> done;
 };
@@ -68,8 +68,13 @@ class FrameJob {
         {std::string(task_.limit_field), "more", fmt::format("at most {}", absl::ToDoubleSeconds(task_.time_limit))});
   }
 
-  /// The task's latest(), by the thread that draws, before the request is read.
-  bool choose() { return task_.latest == nullptr || task_.latest(task_.request); }
+  /// The task's latest(), by the thread that draws, before the request is read. Fits the pixels to the encoding.
+  bool choose() {
+    if (task_.latest != nullptr && !task_.latest(task_.request, task_.encoding)) return false;
+    task_.request.format = task_.encoding.format == encode::ImageFormat::kExr ? render::PixelFormat::kLinearFloat
+                                                                              : render::PixelFormat::kSrgb8;
+    return true;
+  }
 
   /// Once set, stays set; the renderer stops when it sees it.
   const std::atomic<bool>& cancelled() const { return cancelled_; }

@@ -51,7 +51,6 @@ absl::StatusOr<std::unique_ptr<RenderThread>> RenderThread::start(const RenderTh
 RenderThread::~RenderThread() { stop(absl::InfinitePast()); }
 
 absl::StatusOr<std::shared_ptr<FrameJob>> RenderThread::submit(FrameTask task) {
-  task.request.format = pixel_format_for(task.encoding.format);
   auto job = std::make_shared<FrameJob>(std::move(task));
   absl::MutexLock lock(&mutex_);
   if (stopping_) return absl::UnavailableError("the server is stopping");

@@ -26,18 +26,26 @@ struct StreamView {
   uint32_t jpeg_quality = 80;               ///< 1..100
   bool lossless_at_rest = true;             ///< a PNG follows once neither has changed for 150 ms
   uint64_t min_revision = 0;                ///< no frame of an older revision comes
+  /// 1..240: so many come while things move, no more, and cheaper ones rather than fewer: see
+  /// StreamedFrame::reduced. 0: as many as can be drawn.
+  float frames_per_second = 0;
+  uint64_t bytes_per_second = 0;  ///< 10,000 or more: what they take at most; 0: whatever they take
 };
 
 struct StreamOptions {
   StreamView view;
   /// Frames that may be on their way to here at once, 1..64: more hide the way's delay, fewer are never stale.
   uint32_t frames_in_flight = 2;
+  /// For recording: a frame of every revision, in order. next() fails with RESOURCE_EXHAUSTED when more than 64
+  /// revisions wait, and with what broke the connection: nothing is left out in silence. Excludes rates in the view.
+  bool every_revision = false;
 };
 
 struct StreamedFrame {
   RenderedFrame frame;
   uint64_t view_number = 0;  ///< what set_view() returned, or 1 for the first view
   bool at_rest = false;      ///< the lossless frame
+  bool reduced = false;      ///< smaller, coarser or more compressed than asked for, to hold a rate
 };
 
 /// Frames of a scene as it changes; the newest revision and view win, and what is older and not drawn is passed over.

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/status.h"
+#include "service/convert/check.h"
 #include "service/convert/frame.h"
 
 namespace diaphane::service {
@@ -21,7 +22,16 @@ absl::StatusOr<StreamView> from_proto(const v1::StreamView& message, uint64_t ma
   if (task->encoding.format == encode::ImageFormat::kExr) {
     return base::invalid_field("moving.format", "PNG or JPEG", "EXR");
   }
-  return StreamView{message.sequence(), *std::move(task), message.lossless_at_rest(), message.min_revision()};
+  const double rate = message.frames_per_second();
+  if (rate != 0) {
+    if (absl::Status status = check_range("frames_per_second", rate, 1, 240); !status.ok()) return status;
+  }
+  const auto bytes = static_cast<double>(message.bytes_per_second());
+  if (bytes != 0) {
+    if (absl::Status status = check_range("bytes_per_second", bytes, 1e4, 1e12); !status.ok()) return status;
+  }
+  return StreamView{
+      message.sequence(), *std::move(task), message.lossless_at_rest(), message.min_revision(), {rate, bytes}};
 }
 
 }  // namespace diaphane::service

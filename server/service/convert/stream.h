@@ -4,6 +4,7 @@
 #include "absl/status/statusor.h"
 #include "diaphane/v1/render_service.pb.h"
 #include "session/frame_job.h"
+#include "session/frame_pace.h"
 
 namespace diaphane::service {
 
@@ -12,6 +13,7 @@ struct StreamView {
   session::FrameTask moving;  ///< without a scene
   bool lossless_at_rest = false;
   uint64_t min_revision = 0;
+  session::PaceAim aim;
 };
 
 /// Errors name the field, from "view" on.

@@ -39,6 +39,17 @@ class StreamTest : public ServiceTest {
     return stream;
   }
 
+  std::unique_ptr<Stream> open_every_revision(grpc::ClientContext* context, uint32_t credits) {
+    auto stream = frames_->StreamFrames(context);
+    v1::StreamFramesRequest request;
+    request.mutable_opening()->set_scene(scene_);
+    *request.mutable_opening()->mutable_view() = view(1);
+    request.mutable_opening()->set_credits(credits);
+    request.mutable_opening()->set_every_revision(true);
+    stream->Write(request);
+    return stream;
+  }
+
   static void grant(Stream& stream, uint32_t credits) {
     v1::StreamFramesRequest request;
     request.set_credits(credits);
@@ -190,6 +201,69 @@ TEST_F(StreamTest, WaitsForTheRevisionThatItIsToldToAndForAMesh) {
   EXPECT_TRUE(end(*stream).ok());
 }
 
+TEST_F(StreamTest, SendsEveryRevisionInOrderWhereAsked) {
+  grpc::ClientContext context;
+  const uint64_t first = get_scene(scene_).revision();
+  const auto stream = open_every_revision(&context, 3);
+  EXPECT_EQ(next(*stream).frame().scene_revision(), first);
+  for (int i = 0; i < 60; ++i) change();
+  for (uint64_t revision = first + 1; revision <= first + 60; ++revision) {
+    const v1::StreamedFrame frame = next(*stream);
+    ASSERT_EQ(frame.frame().scene_revision(), revision);
+    EXPECT_FALSE(frame.reduced());
+    grant(*stream, 1);
+  }
+  EXPECT_TRUE(end(*stream).ok());
+  EXPECT_EQ(control_->started(), 61);
+}
+
+TEST_F(StreamTest, EndsRatherThanLeaveARevisionOut) {
+  grpc::ClientContext context;
+  const auto stream = open_every_revision(&context, 1);
+  next(*stream);
+  for (int i = 0; i < 70; ++i) change();
+  expect_refused(*stream, grpc::StatusCode::RESOURCE_EXHAUSTED, "every_revision");
+}
+
+TEST_F(StreamTest, HoldsABandwidthThenShowsWhatWasAskedFor) {
+  grpc::ClientContext context;
+  v1::StreamView narrow = view(1);
+  narrow.set_bytes_per_second(10'000);
+  const auto stream = open(&context, narrow, 64);
+  const auto begin = std::chrono::steady_clock::now();
+  size_t bytes = 0;
+  bool reduced = false;
+  for (int i = 0; i < 12; ++i) {
+    const uint64_t revision = change();
+    v1::StreamedFrame frame = next(*stream);
+    for (; frame.frame().scene_revision() < revision; frame = next(*stream)) bytes += frame.frame().image().size();
+    bytes += frame.frame().image().size();
+    reduced = reduced || frame.reduced();
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  EXPECT_TRUE(reduced);
+  EXPECT_LT(static_cast<double>(bytes), 10'000 * (seconds + 0.5));
+  v1::StreamedFrame last = next(*stream);
+  EXPECT_FALSE(last.reduced());
+  EXPECT_EQ(last.frame().size().width_px(), narrow.size().width_px());
+  EXPECT_TRUE(end(*stream).ok());
+}
+
+TEST_F(StreamTest, SendsNoMoreFramesASecondThanAsked) {
+  grpc::ClientContext context;
+  v1::StreamView slow = view(1);
+  slow.set_frames_per_second(20);
+  const auto stream = open(&context, slow, 64);
+  next(*stream);
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 10; ++i) {
+    change();
+    next(*stream);
+  }
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(445));
+  EXPECT_TRUE(end(*stream).ok());
+}
+
 TEST_F(StreamTest, EndsWithTheScene) {
   grpc::ClientContext context;
   const auto stream = open(&context, view(1), 8);
@@ -226,6 +300,16 @@ TEST_F(StreamTest, RefusesWhatItCannotShowAndNamesIt) {
   *request.mutable_opening()->mutable_view() = view(1);
   request.mutable_opening()->mutable_view()->mutable_settings()->set_technique(v1::TECHNIQUE_REFERENCE);
   refuses(request, grpc::StatusCode::INVALID_ARGUMENT, "settings.technique");
+  *request.mutable_opening()->mutable_view() = view(1);
+  request.mutable_opening()->mutable_view()->set_frames_per_second(241);
+  refuses(request, grpc::StatusCode::INVALID_ARGUMENT, "frames_per_second");
+  *request.mutable_opening()->mutable_view() = view(1);
+  request.mutable_opening()->mutable_view()->set_bytes_per_second(9999);
+  refuses(request, grpc::StatusCode::INVALID_ARGUMENT, "bytes_per_second");
+  request.mutable_opening()->mutable_view()->set_bytes_per_second(10'000);
+  request.mutable_opening()->set_every_revision(true);
+  refuses(request, grpc::StatusCode::INVALID_ARGUMENT, "bytes_per_second");
+  request.mutable_opening()->set_every_revision(false);
   *request.mutable_opening()->mutable_view() = view(1);
   request.mutable_opening()->set_scene("scenes/0");
   refuses(request, grpc::StatusCode::NOT_FOUND, "scene");

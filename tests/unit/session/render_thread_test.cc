@@ -141,7 +141,7 @@ TEST_F(RenderThreadTest, DrawsTheSceneThatHadLessOfItsTimeFirst) {
     auto scene = std::make_shared<scene::SceneSnapshot>();
     scene->name = name;
     next.request.scene = std::move(scene);
-    next.latest = [&, name](render::FrameRequest&) {
+    next.latest = [&, name](render::FrameRequest&, encode::Encoding&) {
       const std::lock_guard lock(mutex);
       drawn.push_back(name);
       return true;

@@ -117,6 +117,7 @@ v1::RenderFrameRequest to_proto(const RenderOptions& options) {
   *message.mutable_settings() = to_proto(options.settings);
   message.mutable_encoding()->set_format(static_cast<v1::ImageFormat>(options.format));
   message.mutable_encoding()->set_jpeg_quality(options.jpeg_quality);
+  message.set_min_revision(options.min_revision);
   for (const Channel channel : options.channels) {
     message.mutable_encoding()->add_channels(static_cast<v1::Channel>(channel));
   }

@@ -31,8 +31,9 @@ class FrameStream::Impl {
 
   uint64_t set_view(const StreamView& view) {
     const std::lock_guard lock(mutex_);
-    v1::RenderFrameRequest request = to_proto(RenderOptions{view.camera, view.size, view.settings, view.moving,
-                                                            view.moving == ImageFormat::kJpeg ? view.jpeg_quality : 0});
+    RenderOptions moving{view.camera, view.size, view.settings, view.moving};
+    moving.jpeg_quality = view.moving == ImageFormat::kJpeg ? view.jpeg_quality : 0;
+    v1::RenderFrameRequest request = to_proto(moving);
     view_.set_sequence(view_.sequence() + 1);
     *view_.mutable_camera() = std::move(*request.mutable_camera());
     *view_.mutable_size() = std::move(*request.mutable_size());

@@ -16,6 +16,7 @@ using internal::new_request_id;
 using internal::RenderStub;
 using internal::SceneStub;
 using internal::to_proto;
+using internal::vec3_from_proto;
 
 template <typename Response>
 absl::StatusOr<uint64_t> revision_of(const absl::StatusOr<Response>& response) {
@@ -185,6 +186,28 @@ absl::StatusOr<SceneDescription> Scene::describe() const {
   }
   for (const v1::Mesh& mesh : mesh_answer->meshes()) description.meshes.push_back(from_proto(mesh));
   return description;
+}
+
+absl::StatusOr<std::optional<PickedPoint>> Scene::pick(const Camera& camera, const Size& size, float x_px,
+                                                       float y_px) const {
+  v1::PickRequest request;
+  const v1::RenderFrameRequest frame = to_proto(RenderOptions{camera, size});
+  request.set_scene(name_);
+  *request.mutable_camera() = frame.camera();
+  *request.mutable_size() = frame.size();
+  request.set_x_px(x_px);
+  request.set_y_px(y_px);
+  const auto response = connection_->call(connection_->render_service(), &RenderStub::Pick, request);
+  if (!response.ok()) return response.status();
+  if (!response->has_point()) return std::optional<PickedPoint>();
+  const v1::PickedPoint& point = response->point();
+  return PickedPoint{MeshHandle{point.mesh()},
+                     point.triangle(),
+                     vec3_from_proto(point.barycentric()),
+                     vec3_from_proto(point.position()),
+                     vec3_from_proto(point.facet_normal()),
+                     point.distance(),
+                     response->scene_revision()};
 }
 
 absl::StatusOr<RenderedFrame> Scene::render(const RenderOptions& options) const {

@@ -59,7 +59,7 @@ Server::Server(const ServerOptions& options, std::unique_ptr<session::RenderThre
       workers_(kUploadThreads, kMaxWaitingUploads),
       render_thread_(std::move(render_thread)),
       scene_service_(options.limits, store_, workers_, open_streams_),
-      render_service_(options.limits, store_, *render_thread_, open_streams_),
+      render_service_(options.limits, store_, *render_thread_, workers_, open_streams_),
       server_service_(kVersion, options.limits, render_thread_->info()) {}
 
 absl::StatusOr<std::unique_ptr<Server>> Server::start(const ServerOptions& options,

@@ -5,7 +5,10 @@
 
 #include "absl/synchronization/mutex.h"
 #include "base/status.h"
+#include "fmt/format.h"
+#include "scene/pick.h"
 #include "service/convert/frame.h"
+#include "service/convert/pick.h"
 #include "service/frame_stream.h"
 #include "service/progress_reactor.h"
 #include "service/unary.h"
@@ -44,12 +47,24 @@ class FrameReactor final : public grpc::ServerUnaryReactor {
   std::weak_ptr<session::FrameJob> job_;
 };
 
+/// The newest revision of a request's scene.
+template <typename Request>
+absl::StatusOr<scene::SnapshotPtr> scene_at(const scene::SceneStore& store, const Request& request) {
+  absl::StatusOr<scene::SnapshotPtr> scene = store.scene({"scene", request.scene()});
+  if (scene.ok() && (*scene)->revision < request.min_revision()) {
+    return base::field_error(
+        absl::StatusCode::kFailedPrecondition,
+        {"min_revision", fmt::format("{}", request.min_revision()), fmt::format("at most {}", (*scene)->revision)});
+  }
+  return scene;
+}
+
 absl::StatusOr<session::FrameTask> make_task(const scene::SceneStore& store, const ServiceLimits& limits,
                                              const grpc::CallbackServerContext& context,
                                              const v1::RenderFrameRequest& request) {
   absl::StatusOr<session::FrameTask> task = from_proto(request, limits.max_pixels);
   if (!task.ok()) return task;
-  absl::StatusOr<scene::SnapshotPtr> scene = store.scene({"scene", request.scene()});
+  absl::StatusOr<scene::SnapshotPtr> scene = scene_at(store, request);
   if (!scene.ok()) return scene.status();
   if ((*scene)->meshes.empty()) {
     return base::field_error(absl::StatusCode::kFailedPrecondition,
@@ -91,6 +106,23 @@ grpc::ServerWriteReactor<v1::RenderFrameWithProgressResponse>* RenderService::Re
 grpc::ServerBidiReactor<v1::StreamFramesRequest, v1::StreamFramesResponse>* RenderService::StreamFrames(
     grpc::CallbackServerContext*) {
   return new FrameStream(store_, render_thread_, limits_, open_streams_);
+}
+
+grpc::ServerUnaryReactor* RenderService::Pick(grpc::CallbackServerContext* context, const v1::PickRequest* request,
+                                              v1::PickResponse* response) {
+  const absl::StatusOr<PickQuery> query = from_proto(*request, limits_.max_pixels);
+  if (!query.ok()) return answer(context, query.status());
+  absl::StatusOr<scene::SnapshotPtr> scene = scene_at(store_, *request);
+  if (!scene.ok()) return answer(context, scene.status());
+  grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
+  const bool queued = workers_.try_submit([reactor, response, query = *query, scene = *std::move(scene)] {
+    response->set_scene_revision(scene->revision);
+    const auto picked = scene::pick(*scene, query.camera, query.size_px, query.pixel);
+    if (picked.has_value()) to_proto(*picked, *response->mutable_point());
+    reactor->Finish(grpc::Status::OK);
+  });
+  if (!queued) reactor->Finish(to_grpc(absl::ResourceExhaustedError("too many calls wait to be worked on")));
+  return reactor;
 }
 
 }  // namespace diaphane::service

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/worker_pool.h"
 #include "diaphane/v1/render_service.grpc.pb.h"
 #include "scene/scene_store.h"
 #include "service/limits.h"
@@ -11,9 +12,10 @@ namespace diaphane::service {
 /// Frames of scenes. Thread-safe. What it borrows outlives it, and the server that serves it.
 class RenderService final : public v1::RenderService::CallbackService {
  public:
+  /// `workers` look for what is picked.
   RenderService(const ServiceLimits& limits, scene::SceneStore& store, session::RenderThread& render_thread,
-                OpenStreams& open_streams)
-      : limits_(limits), store_(store), render_thread_(render_thread), open_streams_(open_streams) {}
+                base::WorkerPool& workers, OpenStreams& open_streams)
+      : limits_(limits), store_(store), render_thread_(render_thread), workers_(workers), open_streams_(open_streams) {}
 
  private:
   grpc::ServerUnaryReactor* RenderFrame(grpc::CallbackServerContext* context, const v1::RenderFrameRequest* request,
@@ -24,9 +26,13 @@ class RenderService final : public v1::RenderService::CallbackService {
   grpc::ServerBidiReactor<v1::StreamFramesRequest, v1::StreamFramesResponse>* StreamFrames(
       grpc::CallbackServerContext* context) override;
 
+  grpc::ServerUnaryReactor* Pick(grpc::CallbackServerContext* context, const v1::PickRequest* request,
+                                 v1::PickResponse* response) override;
+
   const ServiceLimits limits_;
   scene::SceneStore& store_;
   session::RenderThread& render_thread_;
+  base::WorkerPool& workers_;
   OpenStreams& open_streams_;
 };
 

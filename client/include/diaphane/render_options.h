@@ -126,6 +126,7 @@ struct RenderOptions {
   RenderSettings settings;
   ImageFormat format = ImageFormat::kPng;
   uint32_t jpeg_quality = 90;  ///< 1..100
+  uint64_t min_revision = 0;   ///< FAILED_PRECONDITION where the server's scene has not come so far
   /// Of EXR alone, each at most once; the frame has then at most a quarter of ServerInfo::max_pixels.
   std::vector<Channel> channels;
 };

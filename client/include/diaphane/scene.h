@@ -74,6 +74,17 @@ struct MeshInfo {
   bool has_colors = false;
 };
 
+/// The nearest point of a surface, front or back.
+struct PickedPoint {
+  MeshHandle mesh;
+  uint32_t triangle = 0;  ///< of those that were uploaded
+  Vec3 barycentric;       ///< shares of its vertices in the point; they sum to 1
+  Vec3 position;          ///< scene units
+  Vec3 facet_normal;      ///< unit, turned to the eye, scene axes
+  double distance = 0;    ///< from the eye, scene units
+  uint64_t scene_revision = 0;
+};
+
 /// A scene and all that is in it, read by several calls: not one moment's state while others change the scene.
 struct SceneDescription {
   SceneInfo scene;
@@ -153,6 +164,13 @@ class Scene {
   /// on the calling thread. Only Technique::kReference knows what lies between. It grows, unless the connection was
   /// lost and the frame begun anew.
   absl::StatusOr<RenderedFrame> render(const RenderOptions& options, const std::function<void(double)>& progress) const;
+
+  /// What lies under a pixel of a frame of that camera and size; nothing where no surface does. `x_px`, `y_px` from the
+  /// frame's upper left corner: 0.5, 0.5 is the first pixel's centre.
+  ///
+  /// Errors: INVALID_ARGUMENT a camera or size out of range, or a pixel beyond the frame; RESOURCE_EXHAUSTED too many
+  /// such calls wait.
+  absl::StatusOr<std::optional<PickedPoint>> pick(const Camera& camera, const Size& size, float x_px, float y_px) const;
 
   /// Frames as the scene changes.
   FrameStream stream(const StreamOptions& options) const;

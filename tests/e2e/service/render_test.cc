@@ -177,5 +177,17 @@ TEST_F(RenderTest, DrawsWhileTheSceneIsDeleted) {
   EXPECT_EQ(response.scene_revision(), 3u);
 }
 
+TEST_F(RenderTest, RefusesARevisionThatIsNotThere) {
+  v1::RenderFrameRequest request = frame_of(scene_);
+  v1::RenderFrameResponse response;
+  request.set_min_revision(get_scene(scene_).revision());
+  EXPECT_TRUE(render(request, &response).ok());
+  request.set_min_revision(request.min_revision() + 1);
+  const grpc::Status status = render(request, &response);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+  EXPECT_EQ(error_info(status).metadata().at("field"), "min_revision");
+  EXPECT_EQ(control_->started(), 1);
+}
+
 }  // namespace
 }  // namespace diaphane::e2e

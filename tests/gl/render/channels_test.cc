@@ -9,6 +9,7 @@
 #include "glm/trigonometric.hpp"
 #include "optics/profile.h"
 #include "render/gl_renderer.h"
+#include "scene/pick.h"
 #include "tests/gl/render/scenes.h"
 
 namespace diaphane::render {
@@ -248,6 +249,28 @@ TEST_F(Channels, CostFramesWithoutThemNothing) {
   const auto frame = renderer_->render(request, std::atomic<bool>(false));
   ASSERT_TRUE(frame.ok()) << frame.status();
   for (const StageTime& stage : frame->stages) EXPECT_NE(stage.stage, "gbuffer");
+}
+
+TEST_F(Channels, PickingFindsThePointThatThePictureShows) {
+  const FrameRequest request = ball_request(Technique::kLambert);
+  const std::vector<Pixel> frame = pixels(request);
+  int shown = 0;
+  for (uint32_t y = 0; y < kSize_px; ++y) {
+    for (uint32_t x = 0; x < kSize_px; ++x) {
+      const Pixel& pixel = frame[y * kSize_px + x];
+      const auto picked = scene::pick(*request.scene, request.camera, {kSize_px, kSize_px}, glm::vec2(x, y) + 0.5f);
+      // A pixel on the rim may fall to either side.
+      if (picked.has_value() != (pixel.colour.a > 0)) {
+        const bool rim = picked.has_value() && std::abs(picked->facet_normal.z) < 0.3;
+        EXPECT_TRUE(rim) << x << " " << y;
+        continue;
+      }
+      if (!picked.has_value()) continue;
+      ++shown;
+      EXPECT_LT(glm::distance(glm::vec3(picked->position), pixel.position), 2e-3f) << x << " " << y;
+    }
+  }
+  EXPECT_GT(shown, 200);
 }
 
 }  // namespace

@@ -179,27 +179,11 @@ void add_lights(CLI::App& command, const std::string& flag, const std::string& f
 
 }  // namespace
 
-void add_render_options(CLI::App& command, RenderArguments& arguments) {
+void add_scene_options(CLI::App& command, RenderArguments& arguments) {
   auto* meshes = command.add_option("MESH", arguments.meshes, "Mesh files: .gltf, .glb, .obj, .ply, .stl, .off");
   auto* scene =
       command.add_option("--scene", arguments.scene_file, "A scene file in place of meshes, materials, lights");
   scene->type_name("FILE.json")->excludes(meshes);
-  command
-      .add_option_function<std::string>(
-          "-o,--output",
-          [&arguments](const std::string& path) {
-            const std::optional<ImageFormat> format = format_of(path);
-            if (!format) {
-              throw CLI::ValidationError("-o", fmt::format("must end in .png, .jpg, .jpeg or .exr, got '{}'", path));
-            }
-            arguments.output = path;
-            arguments.format = *format;
-          },
-          "The image: .png, .jpg or .exr (linear radiance)")
-      ->type_name("FILE")
-      ->required();
-  add_parsed(command, "--aov", channel_names(), "Extra channels of an EXR, as 32-bit floats", parse_channels,
-             arguments.channels);
   add_parsed(command, "--size", "WxH", "Pixels (default: 1280x720)", parse_size, arguments.size);
   add_technique_options(command, arguments);
   add_picture_options(command, arguments);
@@ -236,6 +220,26 @@ void add_render_options(CLI::App& command, RenderArguments& arguments) {
         "--coat", "--mm-per-unit", "--height-mm", "--point-light", "--directional-light", "--spot-light"}) {
     scene->excludes(command.get_option(flag));
   }
+}
+
+void add_render_options(CLI::App& command, RenderArguments& arguments) {
+  command
+      .add_option_function<std::string>(
+          "-o,--output",
+          [&arguments](const std::string& path) {
+            const std::optional<ImageFormat> format = format_of(path);
+            if (!format) {
+              throw CLI::ValidationError("-o", fmt::format("must end in .png, .jpg, .jpeg or .exr, got '{}'", path));
+            }
+            arguments.output = path;
+            arguments.format = *format;
+          },
+          "The image: .png, .jpg or .exr (linear radiance)")
+      ->type_name("FILE")
+      ->required();
+  add_parsed(command, "--aov", channel_names(), "Extra channels of an EXR, as 32-bit floats", parse_channels,
+             arguments.channels);
+  add_scene_options(command, arguments);
 }
 
 }  // namespace diaphane::cli

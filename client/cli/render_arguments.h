@@ -58,9 +58,12 @@ struct RenderArguments {
   bool environment_occlusion = false;
 };
 
-/// Declares the options on `command`; parsing fills `arguments`, which must live as long. What cannot be parsed, is
-/// missing or excludes another option is a CLI::ParseError that names the flag; ranges that the server knows are left
-/// to it.
+/// Declares on `command` the options that say what is shown and how; parsing fills `arguments`, which must live as
+/// long. What cannot be parsed, is missing or excludes another option is a CLI::ParseError that names the flag; ranges
+/// that the server knows are left to it.
+void add_scene_options(CLI::App& command, RenderArguments& arguments);
+
+/// The same, and where one picture goes.
 void add_render_options(CLI::App& command, RenderArguments& arguments);
 
 }  // namespace diaphane::cli

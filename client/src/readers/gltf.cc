@@ -32,8 +32,9 @@ bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) 
 class GltfReader {
  public:
   GltfReader(const tinygltf::Model& model, const GltfExtensions& extensions, const GltfBuffers& buffers,
-             const nlohmann::json& looks, const Source& source)
-      : model_(model),
+             const nlohmann::json& looks, const Source& source, GltfUse use)
+      : use_(use),
+        model_(model),
         extensions_(extensions),
         accessors_(model, extensions, buffers, source),
         materials_(looks, accessors_, source),
@@ -85,7 +86,7 @@ class GltfReader {
     const absl::StatusOr<bool> is_posed = skins_.poses(skin, primitive);
     if (!is_posed.ok()) return is_posed.status();
     if (skin >= 0 && !*is_posed) ++skipped_["skins that cannot be applied"];
-    if (!*is_posed && determinant(instance.scene_from_mesh) == 0) {
+    if (use_ == GltfUse::kMeshes && !*is_posed && determinant(instance.scene_from_mesh) == 0) {
       ++skipped_["primitives of no volume (scale 0)"];
       return absl::OkStatus();
     }
@@ -93,10 +94,11 @@ class GltfReader {
     MeshData data;
     absl::Status status = decompress(instance, index);
     if (status.ok()) status = read_vertices(primitive, position->second, data);
-    if (status.ok()) status = read_looks(primitive, data);
+    if (status.ok() && use_ != GltfUse::kPose) status = read_looks(primitive, data);
     if (status.ok()) status = apply_morphs(instance, primitive, data);
     if (status.ok()) status = read_triangles(primitive, where(instance, index), data);
     if (status.ok() && *is_posed) status = skins_.pose(skin, primitive, where(instance, index), data);
+    if (status.ok() && !*is_posed && use_ != GltfUse::kMeshes) place_in_scene(instance.scene_from_mesh, data);
     if (status.ok()) status = check_vertices(data, where(instance, index));
     if (!status.ok()) return status;
     if (data.triangles.empty()) {
@@ -104,12 +106,33 @@ class GltfReader {
       return absl::OkStatus();
     }
     data.name = name_of(instance, index);
-    if (!*is_posed) {
+    if (!*is_posed && use_ == GltfUse::kMeshes) {
       std::transform(instance.scene_from_mesh.begin(), instance.scene_from_mesh.end(), data.scene_from_mesh.begin(),
                      [](double value) { return static_cast<float>(value); });
     }
     file_.meshes.push_back(std::move(data));
     return absl::OkStatus();
+  }
+
+  static void place_in_scene(const Matrix& m, MeshData& data) {
+    const auto times = [](const auto& c, size_t rows, const Vec3& v) {
+      const auto row = [&](size_t r) { return c[r] * v.x + c[rows + r] * v.y + c[2 * rows + r] * v.z; };
+      return std::array<double, 3>{row(0), row(1), row(2)};
+    };
+    for (Vec3& p : data.positions) {
+      const auto [x, y, z] = times(m, 4, p);
+      p = {static_cast<float>(x + m[12]), static_cast<float>(y + m[13]), static_cast<float>(z + m[14])};
+    }
+    const std::array<double, 9> turn = normal_matrix(m);
+    for (Vec3& n : data.normals) {
+      const auto [x, y, z] = times(turn, 3, n);
+      const double length = std::hypot(x, y, z);
+      n = length > 0
+              ? Vec3{static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length)}
+              : Vec3{};
+    }
+    if (determinant(m) >= 0) return;
+    for (size_t t = 0; t + 2 < data.triangles.size(); t += 3) std::swap(data.triangles[t + 1], data.triangles[t + 2]);
   }
 
   // Puts what Draco compressed in the place of the primitive's accessors.
@@ -289,6 +312,7 @@ class GltfReader {
     return absl::OkStatus();
   }
 
+  const GltfUse use_;
   const tinygltf::Model& model_;
   const GltfExtensions& extensions_;
   GltfPlacement placement_;
@@ -307,14 +331,28 @@ class GltfReader {
 
 }  // namespace
 
-absl::StatusOr<LoadedFile> read_gltf(std::string bytes, const Source& source) {
+absl::StatusOr<std::unique_ptr<GltfFile>> open_gltf(std::string bytes, const Source& source) {
+  auto file = std::make_unique<GltfFile>(GltfFile{source, {}, {}, {}});
   absl::StatusOr<GltfDocument> document = parse_gltf_document(std::move(bytes), source);
   if (!document.ok()) return document.status();
-  const absl::StatusOr<GltfBuffers> buffers = GltfBuffers::load(*document, source);
+  file->document = *std::move(document);
+  absl::StatusOr<GltfBuffers> buffers = GltfBuffers::load(file->document, source);
   if (!buffers.ok()) return buffers.status();
-  const absl::StatusOr<tinygltf::Model> model = parse_gltf_model(*document, source);
+  file->buffers = *std::move(buffers);
+  absl::StatusOr<tinygltf::Model> model = parse_gltf_model(file->document, source);
   if (!model.ok()) return model.status();
-  return GltfReader(*model, document->extensions, *buffers, document->looks, source).read();
+  file->model = *std::move(model);
+  return file;
+}
+
+absl::StatusOr<LoadedFile> read_gltf_model(const GltfFile& file, const tinygltf::Model& model, GltfUse use) {
+  return GltfReader(model, file.document.extensions, file.buffers, file.document.looks, file.source, use).read();
+}
+
+absl::StatusOr<LoadedFile> read_gltf(std::string bytes, const Source& source) {
+  const absl::StatusOr<std::unique_ptr<GltfFile>> file = open_gltf(std::move(bytes), source);
+  if (!file.ok()) return file.status();
+  return read_gltf_model(**file, (*file)->model, GltfUse::kMeshes);
 }
 
 }  // namespace diaphane::readers

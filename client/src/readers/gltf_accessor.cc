@@ -154,6 +154,13 @@ absl::StatusOr<std::vector<GltfFloat4>> GltfAccessors::read_quaternions(int acce
                            "must be VEC4 of floats or of normalised 8 or 16 bit integers"});
 }
 
+absl::StatusOr<std::vector<float>> GltfAccessors::read_scalars(int accessor, uint64_t count) {
+  return read<float>(accessor, count,
+                     {{TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_SCALAR},
+                      [](const tinygltf::Accessor& a) { return is_unit_type(a) || is_rotation_type(a); },
+                      "must be SCALAR of floats or of normalised 8 or 16 bit integers"});
+}
+
 absl::StatusOr<const tinygltf::Accessor*> GltfAccessors::find_attribute(int index, uint64_t count,
                                                                         const AttributeForm& form,
                                                                         std::string_view where) {

@@ -69,6 +69,9 @@ class GltfAccessors {
   /// `count` VEC4 of floats or of normalised signed integers: its rotations.
   absl::StatusOr<std::vector<GltfFloat4>> read_quaternions(int accessor, uint64_t count);
 
+  /// `count` SCALAR of floats or of normalised integers: keys of animations, and morph weights.
+  absl::StatusOr<std::vector<float>> read_scalars(int accessor, uint64_t count);
+
   /// `count` SCALAR of unsigned integers.
   absl::StatusOr<std::vector<uint32_t>> read_indices(int accessor, uint64_t count);
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "fmt/format.h"
+#include "readers/gltf_animation.h"
 #include "readers/gltf_json.h"
 #include "readers/gltf_materials.h"
 #include "readers/gltf_types.h"
@@ -141,6 +142,7 @@ absl::StatusOr<GltfDocument> parse_gltf_document(std::string bytes, const Source
   if (status.ok()) status = check_extensions(document.json, source);
   if (!status.ok()) return status;
   document.looks = take_gltf_looks(document.json);
+  document.animations = take_gltf_animations(document.json);
   absl::StatusOr<GltfExtensions> extensions = take_gltf_extensions(document.json, source);
   if (!extensions.ok()) return extensions.status();
   document.extensions = *std::move(extensions);

@@ -17,7 +17,8 @@ struct GltfDocument {
   /// objects that are in `extensions`; nesting and values bounded; integers beyond 32 bits as floating-point numbers.
   nlohmann::json json;
   GltfExtensions extensions;
-  nlohmann::json looks;  ///< what take_gltf_looks() took
+  nlohmann::json looks;       ///< what take_gltf_looks() took
+  nlohmann::json animations;  ///< what take_gltf_animations() took
 
   std::string bytes;  ///< of a GLB file, which binary_chunk() lies in
   size_t chunk_offset = 0;

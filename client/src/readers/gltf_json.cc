@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kRootMembers[] = {
     "accessors", "asset", "bufferViews", "buffers",   "scenes",   "scene",  "extensionsUsed", "extensionsRequired",
-    "meshes",    "nodes", "skins",       "materials", "textures", "images", "samplers"};
+    "meshes",    "nodes", "skins",       "materials", "textures", "images", "samplers",       "animations"};
 constexpr std::string_view kLeftOut[] = {"extras", "max", "min"};
 constexpr int kNumberOutOfRange = 406;  // nlohmann::json::out_of_range
 

@@ -34,6 +34,18 @@ Matrix compose(const std::array<double, 3>& translation, const std::array<double
   return m;
 }
 
+std::array<double, 9> normal_matrix(const Matrix& m) {
+  const double sign = determinant(m) < 0 ? -1 : 1;
+  std::array<double, 9> c{};
+  for (size_t column = 0; column < 3; ++column) {
+    for (size_t row = 0; row < 3; ++row) {
+      const size_t c1 = (column + 1) % 3, c2 = (column + 2) % 3, r1 = (row + 1) % 3, r2 = (row + 2) % 3;
+      c[3 * column + row] = sign * (m[4 * c1 + r1] * m[4 * c2 + r2] - m[4 * c2 + r1] * m[4 * c1 + r2]);
+    }
+  }
+  return c;
+}
+
 bool fits_float(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(),
                      [](double value) { return std::abs(value) <= std::numeric_limits<float>::max(); });

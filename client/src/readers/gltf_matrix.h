@@ -19,6 +19,9 @@ double determinant(const Matrix& m);
 Matrix compose(const std::array<double, 3>& translation, const std::array<double, 4>& rotation,
                const std::array<double, 3>& scale);
 
+/// What turns normals: the cofactors of the linear part, column-major 3×3, times the sign of its determinant.
+std::array<double, 9> normal_matrix(const Matrix& m);
+
 bool fits_float(std::span<const double> values);
 
 }  // namespace diaphane::readers

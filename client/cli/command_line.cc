@@ -7,6 +7,7 @@
 #include "CLI/CLI.hpp"
 #include "render_arguments.h"
 #include "render_command.h"
+#include "sequence_command.h"
 #include "server_commands.h"
 
 namespace diaphane::cli {
@@ -16,8 +17,10 @@ struct Commands {
   CLI::App app{"Renders translucent objects on a Diaphane server."};
   GlobalOptions global;
   RenderArguments render_arguments;
+  SequenceArguments sequence_arguments;
   std::string scene_id;
   CLI::App* render = nullptr;
+  CLI::App* sequence = nullptr;
   CLI::App* materials = nullptr;
   CLI::App* info = nullptr;
   CLI::App* health = nullptr;
@@ -36,6 +39,9 @@ struct Commands {
 
     render = app.add_subcommand("render", "Render meshes, or a scene file, to an image");
     add_render_options(*render, render_arguments);
+    sequence = app.add_subcommand("sequence",
+                                  "Render a motion, picture by picture, or to a movie; goes on where it was stopped");
+    add_sequence_options(*sequence, sequence_arguments);
     materials = app.add_subcommand("materials", "List the material presets");
     info = app.add_subcommand("info", "Say what the server is, and what it allows");
     health = app.add_subcommand("health", "Say whether a running server serves; exits with 3 if not");
@@ -45,12 +51,13 @@ struct Commands {
     scene_show = scene->add_subcommand("show", "Show one and all that is in it");
     scene_rm = scene->add_subcommand("rm", "Delete one");
     for (CLI::App* command : {scene_show, scene_rm}) command->add_option("ID", scene_id)->required();
-    for (CLI::App* command : {render, materials, info, health, scene, scene_ls, scene_show, scene_rm})
+    for (CLI::App* command : {render, sequence, materials, info, health, scene, scene_ls, scene_show, scene_rm})
       command->fallthrough();
   }
 
   absl::Status run() const {
     if (render->parsed()) return run_render(global, render_arguments);
+    if (sequence->parsed()) return run_sequence(global, sequence_arguments, job_options(*sequence));
     if (materials->parsed()) return run_materials(global);
     if (info->parsed()) return run_info(global);
     if (health->parsed()) return run_health(global);
@@ -58,7 +65,7 @@ struct Commands {
     if (scene_show->parsed()) return run_scene_show(global, scene_id);
     if (scene_rm->parsed()) return run_scene_rm(global, scene_id);
     if (scene->parsed()) return usage_error("scene", "give one of ls, show ID, rm ID");
-    return usage_error("COMMAND", "give one of render, materials, info, health, scene; see diaphane --help");
+    return usage_error("COMMAND", "give one of render, sequence, materials, info, health, scene; see diaphane --help");
   }
 };
 

@@ -68,19 +68,25 @@ class MeshPlanner {
                     size_t otherwise, const RenderArguments* arguments) {
     absl::StatusOr<LoadedFile> file = read_mesh_file(path);
     if (!file.ok()) return with_exit_code(file.status(), kExitFile);
-    units_->add(file->millimetres_per_unit);
-    for (const std::string& warning : file->warnings) {
+    take(path, *std::move(file), scene_from_file, material, otherwise, arguments);
+    return absl::OkStatus();
+  }
+
+  /// The same of a file that was read.
+  void take(const fs::path& path, LoadedFile file, const Matrix& scene_from_file, std::optional<size_t> material,
+            size_t otherwise, const RenderArguments* arguments) {
+    units_->add(file.millimetres_per_unit);
+    for (const std::string& warning : file.warnings) {
       plan_->notes.push_back(fmt::format("{}: {}", path.string(), warning));
     }
     const size_t first = plan_->materials.size();
-    if (!material) take_materials(*file, arguments);
-    for (MeshData& mesh : file->meshes) {
+    if (!material) take_materials(file, arguments);
+    for (MeshData& mesh : file.meshes) {
       mesh.scene_from_mesh = multiply(scene_from_file, mesh.scene_from_mesh);
       const size_t own = mesh.material ? first + *mesh.material : otherwise;
       plan_->material_of_mesh.push_back(material.value_or(own));
       plan_->meshes.push_back(std::move(mesh));
     }
-    return absl::OkStatus();
   }
 
  private:
@@ -102,15 +108,20 @@ class MeshPlanner {
   FileUnits* units_;
 };
 
-absl::Status take_arguments(const RenderArguments& arguments, RenderPlan* plan, FileUnits* units) {
+absl::Status take_arguments(const RenderArguments& arguments, std::optional<LoadedFile> file, RenderPlan* plan,
+                            FileUnits* units) {
   plan->materials.push_back({material_of(arguments)});
   if (!arguments.absorption_mm && !arguments.diffuse_color) plan->refractive_index = arguments.refractive_index;
   plan->lights = arguments.lights;
   const bool chosen = arguments.preset || arguments.absorption_mm || arguments.diffuse_color;
   MeshPlanner planner(plan, units);
+  const std::optional<size_t> material = chosen ? std::optional<size_t>(0) : std::nullopt;
+  if (file) {
+    planner.take(arguments.meshes.front(), *std::move(file), MeshData().scene_from_mesh, material, 0, &arguments);
+    return absl::OkStatus();
+  }
   for (const std::string& mesh : arguments.meshes) {
-    absl::Status status =
-        planner.read(mesh, MeshData().scene_from_mesh, chosen ? std::optional<size_t>(0) : std::nullopt, 0, &arguments);
+    absl::Status status = planner.read(mesh, MeshData().scene_from_mesh, material, 0, &arguments);
     if (!status.ok()) return status;
   }
   return absl::OkStatus();
@@ -173,12 +184,13 @@ void take_settings(const RenderArguments& arguments, RenderOptions* options) {
 
 }  // namespace
 
-absl::StatusOr<RenderPlan> plan_render(const RenderArguments& arguments) {
+absl::StatusOr<RenderPlan> plan_render(const RenderArguments& arguments, PlanSource source) {
   RenderPlan plan;
   FileUnits units;
   std::optional<Camera> camera;
   if (arguments.scene_file.empty()) {
-    if (absl::Status status = take_arguments(arguments, &plan, &units); !status.ok()) return status;
+    absl::Status status = take_arguments(arguments, std::move(source.file), &plan, &units);
+    if (!status.ok()) return status;
   } else {
     absl::StatusOr<SceneFile> scene = read_scene_file(arguments.scene_file);
     if (!scene.ok()) return with_exit_code(scene.status(), kExitFile);
@@ -187,8 +199,8 @@ absl::StatusOr<RenderPlan> plan_render(const RenderArguments& arguments) {
   }
   take_settings(arguments, &plan.options);
 
-  const absl::StatusOr<Bounds> bounds = bounds_of(plan.meshes);
-  if (!bounds.ok()) return with_exit_code(bounds.status(), kExitFile);
+  const absl::StatusOr<Bounds> bounds = source.bounds ? source.bounds(plan) : bounds_of(plan.meshes);
+  if (!bounds.ok()) return source.bounds ? bounds.status() : with_exit_code(bounds.status(), kExitFile);
   plan.options.camera = choose_camera(arguments, camera, *bounds, plan.options.size);
   absl::StatusOr<Unit> unit = choose_unit(arguments, units, plan.meshes, plan.options.camera.up);
   if (!unit.ok()) return unit.status();

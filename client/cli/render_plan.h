@@ -1,13 +1,16 @@
 // Everything that a render needs from this machine, read and checked before any server is asked.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "diaphane/environment.h"
+#include "diaphane/framing.h"
 #include "diaphane/mesh_data.h"
+#include "diaphane/readers.h"
 #include "diaphane/render_options.h"
 #include "diaphane/texture.h"
 #include "diaphane/values.h"
@@ -36,9 +39,17 @@ struct RenderPlan {
   std::vector<std::string> notes;  ///< one line each, for stderr
 };
 
+/// What a plan is made with besides the command line.
+struct PlanSource {
+  std::optional<LoadedFile> file;  ///< what the one mesh file holds; not given: it is read
+  /// Called once the meshes are there, which it may change: what camera and light are to be chosen for. Not given: the
+  /// meshes' bounds.
+  std::function<absl::StatusOr<Bounds>(RenderPlan&)> bounds;
+};
+
 /// Reads the meshes, or the scene file and its meshes, and settles what was left open: size, camera, lights.
 ///
 /// Errors: exit code kExitFile for files, kExitUsage for a --height-mm of meshes that have no height.
-absl::StatusOr<RenderPlan> plan_render(const RenderArguments& arguments);
+absl::StatusOr<RenderPlan> plan_render(const RenderArguments& arguments, PlanSource source = {});
 
 }  // namespace diaphane::cli

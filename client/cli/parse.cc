@@ -123,6 +123,7 @@ std::optional<ImageFormat> format_of(const std::filesystem::path& path) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".png") return ImageFormat::kPng;
   if (extension == ".jpg" || extension == ".jpeg") return ImageFormat::kJpeg;
+  if (extension == ".webp") return ImageFormat::kWebp;
   if (extension == ".exr") return ImageFormat::kExr;
   return std::nullopt;
 }

@@ -229,12 +229,13 @@ void add_render_options(CLI::App& command, RenderArguments& arguments) {
           [&arguments](const std::string& path) {
             const std::optional<ImageFormat> format = format_of(path);
             if (!format) {
-              throw CLI::ValidationError("-o", fmt::format("must end in .png, .jpg, .jpeg or .exr, got '{}'", path));
+              throw CLI::ValidationError("-o",
+                                         fmt::format("must end in .png, .jpg, .jpeg, .webp or .exr, got '{}'", path));
             }
             arguments.output = path;
             arguments.format = *format;
           },
-          "The image: .png, .jpg or .exr (linear radiance)")
+          "The image: .png, .jpg, .webp or .exr (linear radiance)")
       ->type_name("FILE")
       ->required();
   add_parsed(command, "--aov", channel_names(), "Extra channels of an EXR, as 32-bit floats", parse_channels,

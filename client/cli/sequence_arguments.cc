@@ -78,10 +78,10 @@ void add_sequence_options(CLI::App& command, SequenceArguments& arguments) {
           [&](const std::string& name) {
             arguments.picture_format = format_of("frame." + name);
             if (!arguments.picture_format) {
-              throw CLI::ValidationError("--format", fmt::format("must be png, jpg or exr, got '{}'", name));
+              throw CLI::ValidationError("--format", fmt::format("must be png, jpg, webp or exr, got '{}'", name));
             }
           },
-          "Of pictures in a folder: png, jpg or exr (default: png)")
+          "Of pictures in a folder: png, jpg, webp or exr (default: png)")
       ->type_name("NAME");
   command
       .add_option_function<std::string>(

@@ -38,7 +38,16 @@ uint64_t fingerprint(const std::vector<MeshData>& meshes) {
 }
 
 std::string_view extension_of(ImageFormat format) {
-  return format == ImageFormat::kExr ? ".exr" : format == ImageFormat::kJpeg ? ".jpg" : ".png";
+  switch (format) {
+    case ImageFormat::kExr:
+      return ".exr";
+    case ImageFormat::kJpeg:
+      return ".jpg";
+    case ImageFormat::kWebp:
+      return ".webp";
+    default:
+      return ".png";
+  }
 }
 
 std::string job_text(const SequenceArguments& arguments, const MovingPlan& moving, const std::string& job) {

@@ -22,6 +22,8 @@ static_assert(int{v1::TERMS_GLOBAL} == static_cast<int>(Terms::kGlobal));
 static_assert(int{v1::TONE_MAPPING_NONE} == static_cast<int>(ToneMapping::kNone));
 static_assert(int{v1::TONE_MAPPING_NEUTRAL} == static_cast<int>(ToneMapping::kNeutral));
 static_assert(int{v1::IMAGE_FORMAT_PNG} == static_cast<int>(ImageFormat::kPng));
+static_assert(int{v1::IMAGE_FORMAT_WEBP} == static_cast<int>(ImageFormat::kWebp));
+static_assert(int{v1::IMAGE_FORMAT_H264} == static_cast<int>(ImageFormat::kH264));
 static_assert(int{v1::IMAGE_FORMAT_JPEG} == static_cast<int>(ImageFormat::kJpeg));
 static_assert(int{v1::IMAGE_FORMAT_EXR} == static_cast<int>(ImageFormat::kExr));
 static_assert(int{v1::CHANNEL_IRRADIANCE} == static_cast<int>(Channel::kIrradiance));
@@ -116,7 +118,7 @@ v1::RenderFrameRequest to_proto(const RenderOptions& options) {
   message.mutable_size()->set_height_px(options.size.height_px);
   *message.mutable_settings() = to_proto(options.settings);
   message.mutable_encoding()->set_format(static_cast<v1::ImageFormat>(options.format));
-  message.mutable_encoding()->set_jpeg_quality(options.jpeg_quality);
+  message.mutable_encoding()->set_quality(options.quality);
   message.set_min_revision(options.min_revision);
   for (const Channel channel : options.channels) {
     message.mutable_encoding()->add_channels(static_cast<v1::Channel>(channel));

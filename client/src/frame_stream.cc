@@ -32,13 +32,14 @@ class FrameStream::Impl {
   uint64_t set_view(const StreamView& view) {
     const std::lock_guard lock(mutex_);
     RenderOptions moving{view.camera, view.size, view.settings, view.moving};
-    moving.jpeg_quality = view.moving == ImageFormat::kJpeg ? view.jpeg_quality : 0;
+    moving.quality = view.quality;
     v1::RenderFrameRequest request = to_proto(moving);
     view_.set_sequence(view_.sequence() + 1);
     *view_.mutable_camera() = std::move(*request.mutable_camera());
     *view_.mutable_size() = std::move(*request.mutable_size());
     *view_.mutable_settings() = std::move(*request.mutable_settings());
     *view_.mutable_moving() = std::move(*request.mutable_encoding());
+    view_.mutable_moving()->set_bits_per_second(view.bits_per_second);
     view_.set_lossless_at_rest(view.lossless_at_rest);
     view_.set_min_revision(view.min_revision);
     view_.set_frames_per_second(view.frames_per_second);
@@ -62,12 +63,19 @@ class FrameStream::Impl {
         grant_one();
         v1::StreamedFrame& frame = *response.mutable_frame();
         return StreamedFrame{from_proto(std::move(*frame.mutable_frame())), frame.view_sequence(), frame.at_rest(),
-                             frame.reduced()};
+                             frame.reduced(), frame.key_frame()};
       }
       const absl::Status ended = finish();
       if (every_revision_ && came_) return ended;
       if (absl::Status again = reopening_.wait_after(ended); !again.ok()) return again;
     }
+  }
+
+  void request_key_frame() {
+    v1::StreamFramesRequest part;
+    part.mutable_key_frame();
+    const std::lock_guard lock(mutex_);
+    if (stream_ != nullptr) stream_->Write(part);
   }
 
   void close() {
@@ -124,6 +132,7 @@ FrameStream& FrameStream::operator=(FrameStream&&) noexcept = default;
 FrameStream::~FrameStream() = default;
 absl::StatusOr<StreamedFrame> FrameStream::next() { return impl_->next(); }
 uint64_t FrameStream::set_view(const StreamView& view) { return impl_->set_view(view); }
+void FrameStream::request_key_frame() { impl_->request_key_frame(); }
 void FrameStream::close() { impl_->close(); }
 
 FrameStream Scene::stream(const StreamOptions& options) const {

@@ -23,6 +23,8 @@ namespace {
 
 constexpr size_t kUploadThreads = 2;
 constexpr size_t kMaxWaitingUploads = 64;
+constexpr size_t kVideoThreads = 2;
+constexpr size_t kMaxWaitingVideo = 256;    // one a stream
 constexpr int kMaxConcurrentStreams = 100;  // of one connection
 constexpr int kMaxRequestBytes = 4 << 20;   // chunks are at most 1 MiB, and nothing else is near it
 constexpr int kKeepaliveMs = 60'000;
@@ -57,9 +59,10 @@ absl::Status check_address(const ListenAddress& address, bool allow_public_plain
 Server::Server(const ServerOptions& options, std::unique_ptr<session::RenderThread> render_thread)
     : store_(options.limits.scene),
       workers_(kUploadThreads, kMaxWaitingUploads),
+      video_(kVideoThreads, kMaxWaitingVideo),
       render_thread_(std::move(render_thread)),
       scene_service_(options.limits, store_, workers_, open_streams_),
-      render_service_(options.limits, store_, *render_thread_, workers_, open_streams_),
+      render_service_(options.limits, store_, *render_thread_, workers_, video_, open_streams_),
       server_service_(kVersion, options.limits, render_thread_->info()) {}
 
 absl::StatusOr<std::unique_ptr<Server>> Server::start(const ServerOptions& options,

@@ -53,6 +53,7 @@ class Server {
   // In the order of who borrows whom: the server ends first.
   scene::SceneStore store_;
   base::WorkerPool workers_;
+  base::WorkerPool video_;
   service::OpenStreams open_streams_;
   std::unique_ptr<session::RenderThread> render_thread_;
   service::SceneService scene_service_;

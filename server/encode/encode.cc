@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <vector>
 
-#include "encode/srgb_profile.h"
 #include "fmt/format.h"
 
 namespace diaphane::encode {
@@ -27,21 +26,6 @@ absl::StatusOr<std::string> write(const char* name, const OIIO::ImageSpec& spec,
   return std::string(bytes.begin(), bytes.end());
 }
 
-// Of JPEG: PNG has a chunk that says sRGB.
-void attach_profile(OIIO::ImageSpec& spec) {
-  const std::vector<uint8_t>& profile = srgb_profile();
-  spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())), profile.data());
-}
-
-std::vector<uint8_t> over_black(const base::Image8& image) {
-  std::vector<uint8_t> rgb(image.rgba.size() / 4 * 3);
-  for (size_t from = 0, to = 0; from < image.rgba.size(); from += 4, to += 3) {
-    const unsigned alpha = image.rgba[from + 3];
-    for (size_t c = 0; c < 3; ++c) rgb[to + c] = static_cast<uint8_t>((image.rgba[from + c] * alpha + 127) / 255);
-  }
-  return rgb;
-}
-
 }  // namespace
 
 std::string_view content_type(ImageFormat format) {
@@ -52,6 +36,10 @@ std::string_view content_type(ImageFormat format) {
       return "image/jpeg";
     case ImageFormat::kExr:
       return "image/x-exr";
+    case ImageFormat::kWebp:
+      return "image/webp";
+    case ImageFormat::kH264:
+      return "video/h264";
   }
   std::abort();
 }
@@ -65,14 +53,6 @@ absl::StatusOr<std::string> encode_png(const base::Image8& image) {
   spec.attribute("png:compressionLevel", 3);
   spec.attribute("png:filter", kPngFilterSub);
   return write("frame.png", spec, image.rgba.data());
-}
-
-absl::StatusOr<std::string> encode_jpeg(const base::Image8& image, int quality) {
-  OIIO::ImageSpec spec(static_cast<int>(image.width_px), static_cast<int>(image.height_px), 3, OIIO::TypeUInt8);
-  spec.attribute("Compression", fmt::format("jpeg:{}", quality));
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  attach_profile(spec);
-  return write("frame.jpg", spec, over_black(image).data());
 }
 
 absl::StatusOr<std::string> encode_exr(const base::ImageF& image) {

@@ -29,9 +29,9 @@ double work_ms(const session::EncodedFrame& frame) {
 
 }  // namespace
 
-FrameStream::FrameStream(scene::SceneStore& store, session::RenderThread& render_thread, const ServiceLimits& limits,
-                         OpenStreams& open_streams)
-    : store_(store), render_thread_(render_thread), limits_(limits), open_streams_(open_streams) {
+FrameStream::FrameStream(scene::SceneStore& store, session::RenderThread& render_thread, base::WorkerPool& video,
+                         const ServiceLimits& limits, OpenStreams& open_streams)
+    : store_(store), render_thread_(render_thread), video_(video), limits_(limits), open_streams_(open_streams) {
   {
     const absl::MutexLock lock(&link_->mutex);
     link_->reactor = this;
@@ -83,9 +83,13 @@ absl::Status FrameStream::take(const v1::StreamFramesRequest& request) {
   if (request.has_opening()) return open(request.opening());
   if (watch_ == nullptr) return base::invalid_field("part", "an opening first", "none");
   const absl::MutexLock lock(&link_->mutex);
-  absl::Status taken = base::invalid_field("part", "a view or credits", "nothing");
+  absl::Status taken = base::invalid_field("part", "a view, credits or key_frame", "nothing");
   if (request.has_view()) taken = take_view(request.view());
   if (request.part_case() == v1::StreamFramesRequest::kCredits) taken = take_credits(request.credits());
+  if (request.has_key_frame()) {
+    key_frame_wanted_ = true;
+    taken = absl::OkStatus();
+  }
   if (taken.ok()) advance();
   return taken;
 }
@@ -122,6 +126,11 @@ absl::Status FrameStream::take_view(const v1::StreamView& message) {
                                std::max(view->aim.frames_per_second, view->aim.bytes_per_second));
   }
   view_ = *std::move(view);
+  if (view_->moving.encoding.format != encode::ImageFormat::kH264) {
+    key_frame_wanted_ = false;
+  } else if (encoder_ == nullptr) {
+    encoder_ = std::make_shared<encode::H264Encoder>();
+  }
   pace_.set_aim(view_->aim);
   std::erase_if(revisions_, [&](const scene::SnapshotPtr& snapshot) { return !shows(*snapshot); });
   changed_at_ = absl::Now();
@@ -172,7 +181,7 @@ void FrameStream::advance() {
   const std::optional<Shown> newest = wanted();
   if (closing_ || !newest.has_value()) return;
   const bool one_waits = std::any_of(flights_.begin(), flights_.end(), [](const auto& f) { return !f->shown; });
-  const size_t promised = flights_.size() + ready_.size();
+  const size_t promised = flights_.size() + drawn_.size() + ready_.size();
   if (one_waits || flights_.size() >= kMostFlights || promised >= credits_) return;
   if (*newest <= begun_) return promised == 0 ? advance_at_rest() : void();
   const absl::Time now = absl::Now();
@@ -182,6 +191,7 @@ void FrameStream::advance() {
 }
 
 void FrameStream::advance_at_rest() {
+  if (key_frame_wanted_) return start(Rest::kSharp);
   const bool sharpen = begun_reduced_ && begun_.rest == Rest::kMoving;
   if (!sharpen && (!view_->lossless_at_rest || begun_.rest == Rest::kLossless)) return;
   const absl::Time due = changed_at_ + (sharpen ? kSharpAfter : kLosslessAfter);
@@ -223,6 +233,9 @@ bool FrameStream::choose(Flight& flight, render::FrameRequest& request, encode::
   encoding = view_->moving.encoding;
   if (flight.rest == Rest::kLossless) encoding = {.format = encode::ImageFormat::kPng};
   if (moving) begun_reduced_ = flight.reduced = pace_.reduce(request, encoding);
+  if (encoding.format == encode::ImageFormat::kH264) {
+    flight.video = {encoding.bits_per_second, std::exchange(key_frame_wanted_, false)};
+  }
   if (!revisions_.empty()) revisions_.pop_front();
   flight.shown = begun_ = Shown{newest->revision, newest->view_sequence, flight.rest};
   advance();
@@ -235,20 +248,61 @@ void FrameStream::end(const FlightPtr& flight, absl::StatusOr<session::EncodedFr
     if (!absl::IsCancelled(frame.status())) return finish(frame.status());
     return advance();
   }
-  if (flight->rest == Rest::kMoving) {
+  if (flight->rest == Rest::kMoving && frame->pixels.rgba.empty()) {
     pace_.moved({flight->began, absl::Now(), work_ms(*frame), frame->bytes.size()});
   }
   flight->frame = *std::move(frame);
-  if (every_revision_) {
+  if (every_revision_ || encoder_ != nullptr) {
     while (!flights_.empty() && flights_.front()->frame.has_value()) {
-      ready_.push_back(flights_.front());
+      drawn_.push_back(flights_.front());
       flights_.erase(flights_.begin());
     }
+    encode_next();
   } else {
     std::erase(flights_, flight);
     if (*flight->shown > sent_ && (ready_.empty() || *flight->shown > *ready_.front()->shown)) ready_.assign(1, flight);
   }
   write_next();
+  advance();
+}
+
+/// Passes on what is encoded, up to the first frame that is not, and has that encoded.
+void FrameStream::encode_next() {
+  while (!closing_ && !encoding_ && !drawn_.empty()) {
+    const FlightPtr flight = drawn_.front();
+    if (flight->frame->pixels.rgba.empty()) {
+      drawn_.pop_front();
+      ready_.push_back(flight);
+      continue;
+    }
+    encoding_ = true;
+    const auto task = [link = link_, encoder = encoder_, flight] {
+      const absl::Time begin = absl::Now();
+      absl::StatusOr<encode::H264Frame> frame = encoder->encode(flight->frame->pixels, flight->video);
+      const double milliseconds = absl::ToDoubleMilliseconds(absl::Now() - begin);
+      const absl::MutexLock lock(&link->mutex);
+      if (link->reactor != nullptr) link->reactor->encoded(std::move(frame), milliseconds);
+    };
+    if (!video_.try_submit(task)) finish(absl::ResourceExhaustedError("too many videos wait to be encoded"));
+  }
+}
+
+void FrameStream::encoded(absl::StatusOr<encode::H264Frame> frame, double milliseconds) {
+  encoding_ = false;
+  if (closing_) return;  // nobody waits for it, and drawn_ may be gone
+  if (!frame.ok()) return finish(frame.status());
+  const FlightPtr flight = drawn_.front();
+  drawn_.pop_front();
+  flight->frame->pixels = {};
+  flight->frame->bytes = std::move(frame->bytes);
+  flight->frame->stages.push_back({"encode", milliseconds, true});
+  flight->key_frame = frame->key_frame;
+  if (flight->rest == Rest::kMoving) {
+    pace_.moved({flight->began, absl::Now(), work_ms(*flight->frame), flight->frame->bytes.size()});
+  }
+  ready_.push_back(flight);
+  write_next();
+  encode_next();
   advance();
 }
 
@@ -264,6 +318,7 @@ void FrameStream::write_next() {
   out.set_view_sequence(sent_.view_sequence);
   out.set_at_rest(sent_.rest == Rest::kLossless);
   out.set_reduced(flight->reduced);
+  out.set_key_frame(flight->key_frame);
   writing_ = true;
   written_at_ = absl::Now();
   pace_.sent(written_at_, out.frame().image().size());
@@ -307,6 +362,7 @@ void FrameStream::finish(const absl::Status& status) {
   }
   finished_ = true;
   ready_.clear();
+  drawn_.clear();
   revisions_.clear();
   Finish(to_grpc(status));
 }

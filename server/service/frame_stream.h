@@ -9,7 +9,9 @@
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
 #include "absl/time/time.h"
+#include "base/worker_pool.h"
 #include "diaphane/v1/render_service.grpc.pb.h"
+#include "encode/h264.h"
 #include "grpcpp/alarm.h"
 #include "scene/scene_store.h"
 #include "service/convert/stream.h"
@@ -21,12 +23,13 @@
 namespace diaphane::service {
 
 /// One call of StreamFrames. At most three frames of it are on their way: one waits, and shows what is newest when its
-/// turn comes, one is drawn, one is encoded. Of what waits to be written only the newest is kept; with every revision,
-/// all in order. Finishes exactly once: at the client's end, its cancellation, or an error. Deletes itself.
+/// turn comes, one is drawn, one is encoded. Of what waits to be written only the newest is kept; of video, and with
+/// every revision, all in order. Finishes exactly once: at the client's end, its cancellation, or an error. Deletes
+/// itself.
 class FrameStream final : public grpc::ServerBidiReactor<v1::StreamFramesRequest, v1::StreamFramesResponse> {
  public:
-  FrameStream(scene::SceneStore& store, session::RenderThread& render_thread, const ServiceLimits& limits,
-              OpenStreams& open_streams);
+  FrameStream(scene::SceneStore& store, session::RenderThread& render_thread, base::WorkerPool& video,
+              const ServiceLimits& limits, OpenStreams& open_streams);
 
   void OnReadDone(bool ok) override;
   void OnWriteDone(bool ok) override;
@@ -56,6 +59,8 @@ class FrameStream final : public grpc::ServerBidiReactor<v1::StreamFramesRequest
     bool reduced = false;
     std::weak_ptr<session::FrameJob> job{};
     std::optional<session::EncodedFrame> frame{};  ///< once it is made
+    encode::H264Options video{};                   ///< where that is pixels
+    bool key_frame = false;
   };
   using FlightPtr = std::shared_ptr<Flight>;
 
@@ -76,6 +81,8 @@ class FrameStream final : public grpc::ServerBidiReactor<v1::StreamFramesRequest
   void start(Rest rest);
   bool choose(Flight& flight, render::FrameRequest& request, encode::Encoding& encoding);
   void end(const FlightPtr& flight, absl::StatusOr<session::EncodedFrame> frame);
+  void encode_next();
+  void encoded(absl::StatusOr<encode::H264Frame> frame, double milliseconds);
   void write_next();
   void wake_at(absl::Time due);
   void at_alarm();
@@ -83,6 +90,7 @@ class FrameStream final : public grpc::ServerBidiReactor<v1::StreamFramesRequest
 
   scene::SceneStore& store_;
   session::RenderThread& render_thread_;
+  base::WorkerPool& video_;
   const ServiceLimits& limits_;
   OpenStreams& open_streams_;
   uint64_t id_ = 0;  ///< in open_streams_
@@ -96,9 +104,13 @@ class FrameStream final : public grpc::ServerBidiReactor<v1::StreamFramesRequest
   bool every_revision_ = false;
   std::deque<scene::SnapshotPtr> revisions_;  ///< where every one is wanted: those to be drawn
   uint32_t credits_ = 0;
-  std::vector<FlightPtr> flights_;  ///< in the order in which they began
-  std::deque<FlightPtr> ready_;     ///< wait to be written
-  Shown begun_;                     ///< the newest that was ever drawn
+  std::vector<FlightPtr> flights_;                ///< in the order in which they began
+  std::deque<FlightPtr> drawn_;                   ///< where all are sent, in order: wait to be encoded as video
+  std::deque<FlightPtr> ready_;                   ///< wait to be written
+  std::shared_ptr<encode::H264Encoder> encoder_;  ///< once a view asked for one; all frames are sent from then on
+  bool encoding_ = false;                         ///< the first of drawn_
+  bool key_frame_wanted_ = false;
+  Shown begun_;  ///< the newest that was ever drawn
   bool begun_reduced_ = false;
   Shown sent_;  ///< the newest that was ever written
   session::FramePace pace_;

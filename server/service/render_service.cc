@@ -64,6 +64,9 @@ absl::StatusOr<session::FrameTask> make_task(const scene::SceneStore& store, con
                                              const v1::RenderFrameRequest& request) {
   absl::StatusOr<session::FrameTask> task = from_proto(request, limits.max_pixels);
   if (!task.ok()) return task;
+  if (task->encoding.format == encode::ImageFormat::kH264) {
+    return base::invalid_field("encoding.format", "PNG, JPEG, EXR or WebP; H.264 is of StreamFrames", "H.264");
+  }
   absl::StatusOr<scene::SnapshotPtr> scene = scene_at(store, request);
   if (!scene.ok()) return scene.status();
   if ((*scene)->meshes.empty()) {
@@ -105,7 +108,7 @@ grpc::ServerWriteReactor<v1::RenderFrameWithProgressResponse>* RenderService::Re
 
 grpc::ServerBidiReactor<v1::StreamFramesRequest, v1::StreamFramesResponse>* RenderService::StreamFrames(
     grpc::CallbackServerContext*) {
-  return new FrameStream(store_, render_thread_, limits_, open_streams_);
+  return new FrameStream(store_, render_thread_, video_, limits_, open_streams_);
 }
 
 grpc::ServerUnaryReactor* RenderService::Pick(grpc::CallbackServerContext* context, const v1::PickRequest* request,

@@ -12,10 +12,15 @@ namespace diaphane::service {
 /// Frames of scenes. Thread-safe. What it borrows outlives it, and the server that serves it.
 class RenderService final : public v1::RenderService::CallbackService {
  public:
-  /// `workers` look for what is picked.
+  /// `workers` look for what is picked; `video` encodes what streams send as H.264.
   RenderService(const ServiceLimits& limits, scene::SceneStore& store, session::RenderThread& render_thread,
-                base::WorkerPool& workers, OpenStreams& open_streams)
-      : limits_(limits), store_(store), render_thread_(render_thread), workers_(workers), open_streams_(open_streams) {}
+                base::WorkerPool& workers, base::WorkerPool& video, OpenStreams& open_streams)
+      : limits_(limits),
+        store_(store),
+        render_thread_(render_thread),
+        workers_(workers),
+        video_(video),
+        open_streams_(open_streams) {}
 
  private:
   grpc::ServerUnaryReactor* RenderFrame(grpc::CallbackServerContext* context, const v1::RenderFrameRequest* request,
@@ -33,6 +38,7 @@ class RenderService final : public v1::RenderService::CallbackService {
   scene::SceneStore& store_;
   session::RenderThread& render_thread_;
   base::WorkerPool& workers_;
+  base::WorkerPool& video_;
   OpenStreams& open_streams_;
 };
 

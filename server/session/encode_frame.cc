@@ -8,7 +8,8 @@ namespace {
 absl::StatusOr<std::string> encode_pixels(const render::Frame& frame, const encode::Encoding& encoding) {
   if (const auto* image = std::get_if<base::Image8>(&frame.image)) {
     if (encoding.format == encode::ImageFormat::kPng) return encode::encode_png(*image);
-    if (encoding.format == encode::ImageFormat::kJpeg) return encode::encode_jpeg(*image, encoding.jpeg_quality);
+    if (encoding.format == encode::ImageFormat::kJpeg) return encode::encode_jpeg(*image, encoding.quality);
+    if (encoding.format == encode::ImageFormat::kWebp) return encode::encode_webp(*image, encoding.quality);
   } else if (encoding.format == encode::ImageFormat::kExr) {
     return encode::encode_exr(std::get<base::ImageF>(frame.image));
   }
@@ -19,10 +20,13 @@ absl::StatusOr<std::string> encode_pixels(const render::Frame& frame, const enco
 
 absl::StatusOr<EncodedFrame> encode_frame(render::Frame frame, const encode::Encoding& encoding) {
   const absl::Time start = absl::Now();
-  absl::StatusOr<std::string> bytes = encode_pixels(frame, encoding);
-  if (!bytes.ok()) return bytes.status();
   EncodedFrame encoded;
-  encoded.bytes = *std::move(bytes);
+  const bool is_video = encoding.format == encode::ImageFormat::kH264;
+  if (!is_video) {
+    absl::StatusOr<std::string> bytes = encode_pixels(frame, encoding);
+    if (!bytes.ok()) return bytes.status();
+    encoded.bytes = *std::move(bytes);
+  }
   encoded.content_type = encode::content_type(encoding.format);
   std::visit(
       [&](const auto& image) {
@@ -32,7 +36,11 @@ absl::StatusOr<EncodedFrame> encode_frame(render::Frame frame, const encode::Enc
       frame.image);
   encoded.scene_revision = frame.scene_revision;
   encoded.stages = std::move(frame.stages);
-  encoded.stages.push_back({"encode", milliseconds_since(start), true});
+  if (is_video) {
+    encoded.pixels = std::get<base::Image8>(std::move(frame.image));
+  } else {
+    encoded.stages.push_back({"encode", milliseconds_since(start), true});
+  }
   encoded.path = std::move(frame.path);
   encoded.exposure_ev = frame.exposure_ev;
   return encoded;

@@ -7,8 +7,8 @@
 
 namespace diaphane::session {
 
-/// Encodes `frame` and adds the stage "encode". INTERNAL when the frame's pixels are not of the format's kind.
-/// Thread-safe.
+/// Encodes `frame` and adds the stage "encode"; of H.264 it passes the pixels on. INTERNAL when the frame's pixels are
+/// not of the format's kind. Thread-safe.
 absl::StatusOr<EncodedFrame> encode_frame(render::Frame frame, const encode::Encoding& encoding);
 
 /// Milliseconds since `start`.

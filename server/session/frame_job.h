@@ -21,6 +21,7 @@ namespace diaphane::session {
 /// A frame as it goes to a client.
 struct EncodedFrame {
   std::string bytes;
+  base::Image8 pixels{};  ///< of H.264, in place of bytes: whoever has the frames before encodes it
   std::string_view content_type;
   uint32_t width_px = 0;
   uint32_t height_px = 0;

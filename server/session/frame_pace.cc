@@ -13,7 +13,7 @@ constexpr double kRoom = 0.9;
 constexpr int kSettled = 3;  // frames that were on their way before a step are not judged
 constexpr int kLongest = 256;
 constexpr int kJpegStep = 10;
-constexpr uint32_t kFewestPixels = 16;  // a side
+constexpr uint32_t kFewestPixels = 32;  // a side
 
 uint32_t scaled(uint32_t size_px, double scale) {
   const auto smaller = static_cast<uint32_t>(std::lround(size_px * scale));
@@ -59,16 +59,23 @@ bool FramePace::reduce(render::FrameRequest& request, encode::Encoding& encoding
   const int coarser = std::min(time_.step(), finer);
   request.settings.quality = static_cast<diffusion::Quality>(static_cast<int>(request.settings.quality) - coarser);
 
-  const bool jpeg = encoding.format == encode::ImageFormat::kJpeg;
-  const int steps = jpeg ? std::max(0, (encoding.jpeg_quality - kLowestJpegQuality + kJpegStep - 1) / kJpegStep) : 0;
-  const int lower = std::min(size_.step(), steps);
+  const bool lossy = encoding.format == encode::ImageFormat::kJpeg || encoding.format == encode::ImageFormat::kWebp;
+  const int steps = lossy ? std::max(0, (encoding.quality - kLowestQuality + kJpegStep - 1) / kJpegStep) : 0;
+  const bool video = encoding.format == encode::ImageFormat::kH264;  // whose encoder keeps to a rate
+  if (video && aim_.bytes_per_second > 0) {
+    encoding.bits_per_second = std::min(encoding.bits_per_second, static_cast<uint32_t>(8 * aim_.bytes_per_second));
+  }
+  const int for_size = video ? 0 : size_.step();
+  const int lower = std::min(for_size, steps);
   if (lower > 0) {
-    encoding.jpeg_quality = std::max(kLowestJpegQuality, encoding.jpeg_quality - kJpegStep * lower);
+    encoding.quality = std::max(kLowestQuality, encoding.quality - kJpegStep * lower);
   }
 
-  const int smaller = time_.step() - coarser + size_.step() - lower;
+  const int smaller = time_.step() - coarser + for_size - lower;
   const double scale = std::max(kSmallestScale, std::exp2(-0.25 * smaller));
-  const uint32_t width_px = scaled(request.width_px, scale), height_px = scaled(request.height_px, scale);
+  const uint32_t even = video ? ~1u : ~0u;
+  const uint32_t width_px = scaled(request.width_px, scale) & even;
+  const uint32_t height_px = scaled(request.height_px, scale) & even;
   const bool reduced = coarser > 0 || lower > 0 || width_px != request.width_px || height_px != request.height_px;
   request.width_px = width_px;
   request.height_px = height_px;

@@ -18,12 +18,13 @@ struct PaceAim {
 };
 
 /// Steers the frames of one viewer by what the last ones took. For time the integral's quality goes first, then the
-/// size; for bytes the JPEG quality, then the size. Down when frames come late or large; up again once there is room
-/// for the next step, later each time that there turned out to be none. No clock of its own, one thread at a time.
+/// size; for bytes the quality of JPEG and WebP, then the size, or the bitrate of H.264. Down when frames come late or
+/// large; up again once there is room for the next step, later each time that there turned out to be none. No clock of
+/// its own, one thread at a time.
 class FramePace {
  public:
   static constexpr double kSmallestScale = 0.25;
-  static constexpr int kLowestJpegQuality = 30;
+  static constexpr int kLowestQuality = 30;
 
   /// Begins anew where `aim` is another.
   void set_aim(const PaceAim& aim);

@@ -97,7 +97,9 @@ struct Size {
 enum class ImageFormat {
   kPng = 1,   ///< 8-bit sRGB with unassociated alpha, lossless
   kJpeg = 2,  ///< 8-bit sRGB over black
-  kExr = 3    ///< linear outgoing radiance times alpha, W·mm⁻²·sr⁻¹, 32-bit float RGBA
+  kExr = 3,   ///< linear outgoing radiance times alpha, W·mm⁻²·sr⁻¹, 32-bit float RGBA
+  kWebp = 4,  ///< 8-bit sRGB with alpha, lossy
+  kH264 = 5   ///< of streams alone: see StreamView::moving
 };
 
 /// What an EXR tells beside its colour, of the surface that each pixel's centre shows, as 32-bit floats. Where a pixel
@@ -125,8 +127,8 @@ struct RenderOptions {
   Size size;
   RenderSettings settings;
   ImageFormat format = ImageFormat::kPng;
-  uint32_t jpeg_quality = 90;  ///< 1..100
-  uint64_t min_revision = 0;   ///< FAILED_PRECONDITION where the server's scene has not come so far
+  uint32_t quality = 90;      ///< of JPEG and WebP, 1..100
+  uint64_t min_revision = 0;  ///< FAILED_PRECONDITION where the server's scene has not come so far
   /// Of EXR alone, each at most once; the frame has then at most a quarter of ServerInfo::max_pixels.
   std::vector<Channel> channels;
 };
@@ -140,7 +142,7 @@ struct StageTime {
 
 struct RenderedFrame {
   std::string image;         ///< the encoded file's bytes
-  std::string content_type;  ///< image/png, image/jpeg or image/x-exr
+  std::string content_type;  ///< image/png, image/jpeg, image/x-exr, image/webp or video/h264
   uint64_t scene_revision = 0;
   Size size;
   std::vector<StageTime> stages;

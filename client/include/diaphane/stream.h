@@ -21,11 +21,14 @@ struct LightHandle;
 struct StreamView {
   Camera camera;
   Size size;
-  RenderSettings settings;                  ///< any technique but kReference
-  ImageFormat moving = ImageFormat::kJpeg;  ///< of frames while scene or view change; not kExr
-  uint32_t jpeg_quality = 80;               ///< 1..100
-  bool lossless_at_rest = true;             ///< a PNG follows once neither has changed for 150 ms
-  uint64_t min_revision = 0;                ///< no frame of an older revision comes
+  RenderSettings settings;  ///< any technique but kReference
+  /// Of frames while scene or view change; not kExr. Of kH264 (even sides of 32..4096) every frame is one access unit,
+  /// Annex B, which refers to those before it: the first, and one after a connection was lost, is a key frame.
+  ImageFormat moving = ImageFormat::kJpeg;
+  uint32_t quality = 80;                 ///< of JPEG and WebP, 1..100
+  uint32_t bits_per_second = 4'000'000;  ///< of H.264 at 30 frames a second, 10,000..1e9
+  bool lossless_at_rest = true;          ///< a PNG follows once neither has changed for 150 ms
+  uint64_t min_revision = 0;             ///< no frame of an older revision comes
   /// 1..240: so many come while things move, no more, and cheaper ones rather than fewer: see
   /// StreamedFrame::reduced. 0: as many as can be drawn.
   float frames_per_second = 0;
@@ -46,6 +49,7 @@ struct StreamedFrame {
   uint64_t view_number = 0;  ///< what set_view() returned, or 1 for the first view
   bool at_rest = false;      ///< the lossless frame
   bool reduced = false;      ///< smaller, coarser or more compressed than asked for, to hold a rate
+  bool key_frame = false;    ///< of H.264: it can be decoded by itself
 };
 
 /// Frames of a scene as it changes; the newest revision and view win, and what is older and not drawn is passed over.
@@ -62,6 +66,9 @@ class FrameStream {
 
   /// Shows something else from now on; returns its number. Errors of the view come out of next().
   uint64_t set_view(const StreamView& view);
+
+  /// Has the next frame of H.264 be a key frame, which comes even where nothing changes.
+  void request_key_frame();
 
   /// Ends the stream, and a next() that waits.
   void close();

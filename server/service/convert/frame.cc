@@ -173,13 +173,24 @@ absl::StatusOr<encode::Encoding> from_proto(const v1::Encoding& message) {
     case v1::IMAGE_FORMAT_EXR:
       encoding.format = encode::ImageFormat::kExr;
       break;
+    case v1::IMAGE_FORMAT_WEBP:
+      encoding.format = encode::ImageFormat::kWebp;
+      break;
+    case v1::IMAGE_FORMAT_H264:
+      encoding.format = encode::ImageFormat::kH264;
+      break;
     default:
       return unknown_value("encoding.format", message.format());
   }
-  if (message.jpeg_quality() != 0) {
-    absl::Status quality = check_range("encoding.jpeg_quality", message.jpeg_quality(), 1, 100);
+  if (message.quality() != 0) {
+    absl::Status quality = check_range("encoding.quality", message.quality(), 1, 100);
     if (!quality.ok()) return quality;
-    encoding.jpeg_quality = static_cast<int>(message.jpeg_quality());
+    encoding.quality = static_cast<int>(message.quality());
+  }
+  if (message.bits_per_second() != 0) {
+    absl::Status rate = check_range("encoding.bits_per_second", message.bits_per_second(), 1e4, 1e9);
+    if (!rate.ok()) return rate;
+    encoding.bits_per_second = message.bits_per_second();
   }
   return encoding;
 }
@@ -238,9 +249,10 @@ absl::StatusOr<session::FrameTask> from_proto(const v1::RenderFrameRequest& mess
   task.request.height_px = message.size().height_px();
   task.request.settings = *settings;
   task.encoding = *encoding;
-  // JPEG has no alpha: edges that share a pixel with nothing are mixed with its black as light, not as codes.
-  if (encoding->format == encode::ImageFormat::kJpeg && settings->samples > 1 && !settings->background &&
-      !settings->environment_background) {
+  // JPEG has no alpha, nor has H.264: edges that share a pixel with nothing are mixed with its black as light, not as
+  // codes.
+  const bool opaque = encoding->format == encode::ImageFormat::kJpeg || encoding->format == encode::ImageFormat::kH264;
+  if (opaque && settings->samples > 1 && !settings->background && !settings->environment_background) {
     task.request.settings.background = glm::vec3(0);
   }
   return task;

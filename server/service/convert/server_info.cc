@@ -1,5 +1,6 @@
 #include "service/convert/server_info.h"
 
+#include "encode/h264.h"
 #include "service/convert/frame.h"
 
 namespace diaphane::service {
@@ -10,7 +11,9 @@ void to_proto(const render::RendererInfo& renderer, v1::ServerInfo& message) {
   message.set_gl_version(renderer.gl_version);
   message.set_software_rendering(renderer.software);
   message.set_context_reason(renderer.reason);
-  for (const char* format : {"png", "jpeg", "exr"}) message.add_image_formats(format);
+  for (const char* format : {"png", "jpeg", "exr", "webp"}) message.add_image_formats(format);
+  if (!encode::h264_encoder().empty()) message.add_image_formats("h264");
+  message.set_h264_encoder(encode::h264_encoder());
   for (const char* technique : {"integral", "paper", "reference", "lambert"}) message.add_techniques(technique);
 }
 

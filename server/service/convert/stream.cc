@@ -3,10 +3,28 @@
 #include <utility>
 
 #include "base/status.h"
+#include "encode/h264.h"
+#include "fmt/format.h"
 #include "service/convert/check.h"
 #include "service/convert/frame.h"
 
 namespace diaphane::service {
+
+namespace {
+
+absl::Status check_video(const session::FrameTask& task) {
+  if (encode::h264_encoder().empty())
+    return absl::UnimplementedError("moving.format: this server has no H.264 encoder");
+  constexpr uint32_t kSmallest_px = 32, kLargest_px = 4096;  // what encoders take
+  for (const auto& [field, side_px] :
+       {std::pair("size.width_px", task.request.width_px), std::pair("size.height_px", task.request.height_px)}) {
+    if (side_px % 2 == 0 && side_px >= kSmallest_px && side_px <= kLargest_px) continue;
+    return base::invalid_field(field, fmt::format("even and {}..{} for H.264", kSmallest_px, kLargest_px), side_px);
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
 
 absl::StatusOr<StreamView> from_proto(const v1::StreamView& message, uint64_t max_pixels) {
   v1::RenderFrameRequest request;
@@ -20,7 +38,10 @@ absl::StatusOr<StreamView> from_proto(const v1::StreamView& message, uint64_t ma
     return base::invalid_field("settings.technique", "integral, paper or lambert", "reference");
   }
   if (task->encoding.format == encode::ImageFormat::kExr) {
-    return base::invalid_field("moving.format", "PNG or JPEG", "EXR");
+    return base::invalid_field("moving.format", "PNG, JPEG, WebP or H.264", "EXR");
+  }
+  if (task->encoding.format == encode::ImageFormat::kH264) {
+    if (absl::Status status = check_video(*task); !status.ok()) return status;
   }
   const double rate = message.frames_per_second();
   if (rate != 0) {

@@ -162,8 +162,7 @@ TEST_F(BadRequestTest, CountsEverySampleOfTheReference) {
 TEST_F(BadRequestTest, RefusesEncodings) {
   expect_frame_refused([](auto& r) { r.mutable_encoding()->set_format(static_cast<v1::ImageFormat>(9)); },
                        {"encoding.format", "9", "IMAGE_FORMAT_PNG"});
-  expect_frame_refused([](auto& r) { r.mutable_encoding()->set_jpeg_quality(101); },
-                       {"encoding.jpeg_quality", "101", "1..100"});
+  expect_frame_refused([](auto& r) { r.mutable_encoding()->set_quality(101); }, {"encoding.quality", "101", "1..100"});
 }
 
 TEST_F(BadRequestTest, RefusesChannels) {

@@ -49,6 +49,14 @@ TEST_F(RenderTest, EncodesAsAsked) {
   request.mutable_encoding()->set_format(v1::IMAGE_FORMAT_EXR);
   ASSERT_TRUE(render(request, &response).ok());
   EXPECT_THAT(response.image(), StartsWith("v/1\x01"));
+  request.mutable_encoding()->set_format(v1::IMAGE_FORMAT_WEBP);
+  ASSERT_TRUE(render(request, &response).ok());
+  EXPECT_THAT(response.image(), StartsWith("RIFF"));
+  EXPECT_EQ(response.content_type(), "image/webp");
+  request.mutable_encoding()->set_format(v1::IMAGE_FORMAT_H264);
+  const grpc::Status video = render(request, &response);
+  EXPECT_EQ(video.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(error_info(video).metadata().at("field"), "encoding.format");
 }
 
 TEST_F(RenderTest, EncodesTheChannelsThatWereAskedFor) {

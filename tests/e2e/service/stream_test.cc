@@ -4,7 +4,9 @@
 #include <future>
 #include <thread>
 
+#include "encode/h264.h"
 #include "tests/e2e/service/test_server.h"
+#include "tests/support/h264_decoder.h"
 
 namespace diaphane::e2e {
 namespace {
@@ -264,6 +266,93 @@ TEST_F(StreamTest, SendsNoMoreFramesASecondThanAsked) {
   EXPECT_TRUE(end(*stream).ok());
 }
 
+/// A view that comes as video.
+v1::StreamView as_video(v1::StreamView view) {
+  view.mutable_size()->set_width_px(64);
+  view.mutable_size()->set_height_px(48);
+  view.mutable_moving()->set_format(v1::IMAGE_FORMAT_H264);
+  return view;
+}
+
+TEST_F(StreamTest, SendsVideoWhoseEveryFrameDecodesAtOnce) {
+  if (encode::h264_encoder().empty()) GTEST_SKIP() << "no encoder of H.264 here";
+  grpc::ClientContext context;
+  const auto stream = open(&context, as_video(view(1)), 2);
+  testing_support::H264Decoder decoder;
+  uint64_t revision = get_scene(scene_).revision();
+  for (int i = 0; i < 40; ++i) {
+    const v1::StreamedFrame frame = next(*stream);
+    EXPECT_EQ(frame.frame().scene_revision(), revision);
+    EXPECT_EQ(frame.frame().content_type(), "video/h264");
+    EXPECT_EQ(frame.key_frame(), i == 0);
+    EXPECT_EQ(frame.frame().stages(frame.frame().stages_size() - 1).stage(), "encode");
+    const auto decoded = decoder.decode(frame.frame().image());
+    ASSERT_TRUE(decoded.has_value()) << "frame " << i;
+    EXPECT_EQ(decoded->width_px, 64);
+    revision = change();
+    grant(*stream, 1);
+  }
+  EXPECT_TRUE(end(*stream).ok());
+}
+
+TEST_F(StreamTest, SendsAKeyFrameWhereNothingChangesAndALosslessOneAtRest) {
+  if (encode::h264_encoder().empty()) GTEST_SKIP() << "no encoder of H.264 here";
+  grpc::ClientContext context;
+  const auto stream = open(&context, as_video(view(1, true)), 8);
+  EXPECT_TRUE(next(*stream).key_frame());
+  const v1::StreamedFrame still = next(*stream);
+  EXPECT_TRUE(still.at_rest());
+  EXPECT_EQ(still.frame().content_type(), "image/png");
+  v1::StreamFramesRequest request;
+  request.mutable_key_frame();
+  stream->Write(request);
+  const v1::StreamedFrame key = next(*stream);
+  EXPECT_TRUE(key.key_frame());
+  EXPECT_TRUE(testing_support::H264Decoder().decode(key.frame().image()).has_value());
+  EXPECT_TRUE(end(*stream).ok());
+}
+
+TEST_F(StreamTest, ViewersOfVideoMayLeaveAtAnyTime) {
+  if (encode::h264_encoder().empty()) GTEST_SKIP() << "no encoder of H.264 here";
+  v1::StreamView large = as_video(view(1));
+  large.mutable_size()->set_width_px(1280);
+  large.mutable_size()->set_height_px(720);
+  for (int i = 0; i < 20; ++i) {
+    grpc::ClientContext context;
+    const auto stream = open(&context, large, 8);
+    change();
+    // While the first frame is drawn, or encoded, or written.
+    std::this_thread::sleep_for(std::chrono::milliseconds(2 * i));
+    context.TryCancel();
+    v1::StreamFramesResponse response;
+    while (stream->Read(&response)) {
+    }
+    EXPECT_EQ(stream->Finish().error_code(), grpc::StatusCode::CANCELLED);
+  }
+  grpc::ClientContext context;
+  const auto stream = open(&context, as_video(view(1)), 1);
+  EXPECT_TRUE(next(*stream).key_frame());
+  EXPECT_TRUE(end(*stream).ok());
+}
+
+TEST_F(StreamTest, LeavesNoFrameOfAVideoOutWhateverTheViewerIsLike) {
+  if (encode::h264_encoder().empty()) GTEST_SKIP() << "no encoder of H.264 here";
+  grpc::ClientContext context;
+  const auto stream = open(&context, as_video(view(1)), 32);
+  testing_support::H264Decoder decoder;
+  uint64_t newest = 0;
+  for (int i = 0; i < 100; ++i) newest = change();
+  uint64_t before = 0;
+  while (before < newest) {
+    const v1::StreamedFrame frame = next(*stream);
+    ASSERT_GT(frame.frame().scene_revision(), before);
+    before = frame.frame().scene_revision();
+    ASSERT_TRUE(decoder.decode(frame.frame().image()).has_value());
+    grant(*stream, 1);
+  }
+  EXPECT_TRUE(end(*stream).ok());
+}
+
 TEST_F(StreamTest, EndsWithTheScene) {
   grpc::ClientContext context;
   const auto stream = open(&context, view(1), 8);
@@ -310,6 +399,15 @@ TEST_F(StreamTest, RefusesWhatItCannotShowAndNamesIt) {
   request.mutable_opening()->set_every_revision(true);
   refuses(request, grpc::StatusCode::INVALID_ARGUMENT, "bytes_per_second");
   request.mutable_opening()->set_every_revision(false);
+  if (!encode::h264_encoder().empty()) {
+    *request.mutable_opening()->mutable_view() = as_video(view(1));
+    request.mutable_opening()->mutable_view()->mutable_size()->set_width_px(65);
+    refuses(request, grpc::StatusCode::INVALID_ARGUMENT, "size.width_px");
+    *request.mutable_opening()->mutable_view() = as_video(view(1));
+    request.mutable_opening()->mutable_view()->mutable_moving()->set_bits_per_second(9999);
+    refuses(request, grpc::StatusCode::INVALID_ARGUMENT, "encoding.bits_per_second");
+  }
+  *request.mutable_opening()->mutable_view() = view(1);
   *request.mutable_opening()->mutable_view() = view(1);
   request.mutable_opening()->set_scene("scenes/0");
   refuses(request, grpc::StatusCode::NOT_FOUND, "scene");

@@ -11,6 +11,7 @@
 #include <map>
 
 #include "encode/srgb_profile.h"
+#include "webp/decode.h"
 
 namespace diaphane::encode {
 namespace {
@@ -106,6 +107,38 @@ TEST(SrgbProfile, HasTagsWithinItAndPrimariesThatAddUpToItsWhite) {
 TEST(EncodeJpeg, IsSmallerAtALowerQuality) {
   const base::Image8 image = half_transparent(64, 64);
   EXPECT_LT(encode_jpeg(image, 20)->size(), encode_jpeg(image, 95)->size());
+}
+
+TEST(EncodeJpeg, LiesOverBlackAndIsNearItsPicture) {
+  base::Image8 image{16, 16, {}};
+  for (int i = 0; i < 256; ++i) image.rgba.insert(image.rgba.end(), {200, 100, 50, 128});
+  const Decoded decoded = decode(*encode_jpeg(image, 95), "a.jpg");
+  ASSERT_EQ(decoded.spec.nchannels, 3);
+  EXPECT_NEAR(decoded.values[0] * 255, 100, 3);
+  EXPECT_NEAR(decoded.values[1] * 255, 50, 3);
+  EXPECT_NEAR(decoded.values[2] * 255, 25, 3);
+}
+
+TEST(EncodeWebp, KeepsAlphaAndIsNearItsPicture) {
+  base::Image8 image{32, 16, {}};
+  for (int i = 0; i < 512; ++i) {
+    image.rgba.insert(image.rgba.end(), {200, 100, 50, static_cast<uint8_t>(i % 32 < 16 ? 255 : 128)});
+  }
+  const std::string bytes = *encode_webp(image, 95);
+  int width = 0, height = 0;
+  const std::unique_ptr<uint8_t, void (*)(void*)> decoded(
+      WebPDecodeRGBA(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), &width, &height), WebPFree);
+  ASSERT_NE(decoded, nullptr);
+  ASSERT_EQ(width, 32);
+  ASSERT_EQ(height, 16);
+  for (size_t i = 0; i < image.rgba.size(); ++i) {
+    EXPECT_NEAR(decoded.get()[i], image.rgba[i], i % 4 == 3 ? 0 : 8) << "byte " << i;
+  }
+}
+
+TEST(EncodeWebp, IsSmallerAtALowerQuality) {
+  const base::Image8 image = half_transparent(64, 64);
+  EXPECT_LT(encode_webp(image, 20)->size(), encode_webp(image, 95)->size());
 }
 
 TEST(EncodeExr, KeepsEveryFloat) {

@@ -29,7 +29,7 @@ class Viewer {
       const double pixels = seen.request.width_px * seen.request.height_px / (1280.0 * 720);
       const bool draft = seen.request.settings.quality == diffusion::Quality::kDraft;
       const double took_ms = work_ms * (draft ? 0.7 : 1) * (0.2 + 0.8 * pixels);
-      const auto bytes = static_cast<size_t>(bytes_at_full * pixels * seen.encoding.jpeg_quality / 90.0);
+      const auto bytes = static_cast<size_t>(bytes_at_full * pixels * seen.encoding.quality / 90.0);
       now_ += absl::Milliseconds(took_ms);
       pace_.moved({began, now_, took_ms, bytes});
       pace_.sent(now_, bytes);
@@ -88,12 +88,12 @@ TEST(FramePace, ComesBackWhenThereIsRoom) {
 TEST(FramePace, HoldsBytesByQualityFirstAndNeverExceedsThem) {
   Viewer viewer({.frames_per_second = 30, .bytes_per_second = 2e6});
   const auto some = viewer.watch(200, 5);
-  EXPECT_LT(some.encoding.jpeg_quality, 90);
+  EXPECT_LT(some.encoding.quality, 90);
   EXPECT_EQ(some.request.width_px, 1280u);
   EXPECT_NEAR(some.interval_ms, 1000 / 30.0, 2);
   Viewer poor({.frames_per_second = 30, .bytes_per_second = 3e5});
   const auto least = poor.watch(200, 5);
-  EXPECT_EQ(least.encoding.jpeg_quality, FramePace::kLowestJpegQuality);
+  EXPECT_EQ(least.encoding.quality, FramePace::kLowestQuality);
   EXPECT_LT(least.request.width_px, 1280u);
   EXPECT_LT(1000 / least.interval_ms * 1e5 * least.request.width_px * least.request.height_px / (1280 * 720.0) / 3,
             3.3e5);

@@ -9,6 +9,7 @@
 #include "diaphane/scene.h"
 #include "diaphane/stream.h"
 #include "fmt/format.h"
+#include "meshoptimizer.h"
 #include "reopening.h"
 
 namespace diaphane {
@@ -17,13 +18,53 @@ using internal::to_proto;
 
 class Deformer::Impl {
  public:
-  Impl(std::shared_ptr<internal::Connection> connection, std::string scene)
-      : connection_(std::move(connection)), reopening_(connection_->options()), scene_(std::move(scene)) {}
+  Impl(std::shared_ptr<internal::Connection> connection, std::string scene, const DeformerOptions& options)
+      : options_(options),
+        connection_(std::move(connection)),
+        reopening_(connection_->options()),
+        scene_(std::move(scene)) {}
 
   ~Impl() {
     if (!stream_) return;
     context_->TryCancel();
     stream_->Finish();
+  }
+
+  /// `values`, `each` bytes an element, as they travel in `positions`.
+  std::string pack(const void* values, size_t count, size_t each, v1::VertexPositions& positions) const {
+    if (!options_.compress || count == 0) return {static_cast<const char*>(values), count * each};
+    meshopt_encodeVertexVersion(0);
+    std::string bytes(meshopt_encodeVertexBufferBound(count, each), '\0');
+    bytes.resize(
+        meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(), values, count, each));
+    positions.set_meshopt_count(static_cast<uint32_t>(count));
+    return bytes;
+  }
+  v1::SceneChange quantize(const MeshHandle& mesh, std::span<const Vec3> values, const Vec3& lowest,
+                           const Vec3& highest, bool displacements) const {
+    std::vector<uint16_t> steps;
+    // The codec's elements are of four bytes or a multiple.
+    const size_t per_vertex = options_.compress ? 4 : 3;
+    steps.reserve(per_vertex * values.size());
+    const auto add_step = [&steps](float value, float low, float high) {
+      const double share = high > low ? (double{value} - low) / (double{high} - low) : 0;
+      steps.push_back(static_cast<uint16_t>(std::lround(65535 * std::clamp(share, 0.0, 1.0))));
+    };
+    for (const Vec3& v : values) {
+      add_step(v.x, lowest.x, highest.x);
+      add_step(v.y, lowest.y, highest.y);
+      add_step(v.z, lowest.z, highest.z);
+      if (per_vertex == 4) steps.push_back(0);
+    }
+    v1::SceneChange change;
+    v1::VertexPositions& positions = *change.mutable_positions();
+    positions.set_mesh(mesh.name);
+    positions.set_displacements(displacements);
+    *positions.mutable_quantized()->mutable_lowest() = to_proto(lowest);
+    *positions.mutable_quantized()->mutable_highest() = to_proto(highest);
+    positions.mutable_quantized()->set_uint16(
+        pack(steps.data(), values.size(), per_vertex * sizeof(uint16_t), positions));
+    return change;
   }
 
   void begin() { group_.emplace(); }
@@ -96,6 +137,7 @@ class Deformer::Impl {
     for (const v1::EditSceneRequest& waiting : waiting_) stream_->Write(waiting);
   }
 
+  const DeformerOptions options_;
   const std::shared_ptr<internal::Connection> connection_;
   internal::Reopening reopening_;
   const std::string scene_;
@@ -122,29 +164,32 @@ absl::Status Deformer::set_positions(const MeshHandle& mesh, std::span<const uin
   v1::SceneChange change;
   change.mutable_positions()->set_mesh(mesh.name);
   change.mutable_positions()->mutable_indices()->Add(indices.begin(), indices.end());
-  change.mutable_positions()->set_float32(positions.data(), positions.size_bytes());
+  change.mutable_positions()->set_float32(
+      impl_->pack(positions.data(), positions.size(), sizeof(Vec3), *change.mutable_positions()));
   return impl_->add(std::move(change));
 }
 
 absl::Status Deformer::set_quantized_positions(const MeshHandle& mesh, std::span<const Vec3> positions,
                                                const Vec3& lowest, const Vec3& highest) {
-  std::vector<uint16_t> steps;
-  steps.reserve(3 * positions.size());
-  const auto quantize = [&steps](float value, float low, float high) {
-    const double share = high > low ? (double{value} - low) / (double{high} - low) : 0;
-    steps.push_back(static_cast<uint16_t>(std::lround(65535 * std::clamp(share, 0.0, 1.0))));
-  };
-  for (const Vec3& p : positions) {
-    quantize(p.x, lowest.x, highest.x);
-    quantize(p.y, lowest.y, highest.y);
-    quantize(p.z, lowest.z, highest.z);
-  }
+  return impl_->add(impl_->quantize(mesh, positions, lowest, highest, false));
+}
+
+absl::Status Deformer::set_quantized_displacements(const MeshHandle& mesh, std::span<const Vec3> displacements,
+                                                   const Vec3& lowest, const Vec3& highest) {
+  return impl_->add(impl_->quantize(mesh, displacements, lowest, highest, true));
+}
+
+absl::Status Deformer::set_weights(const MeshHandle& mesh, std::span<const float> weights) {
   v1::SceneChange change;
-  change.mutable_positions()->set_mesh(mesh.name);
-  v1::QuantizedPositions& quantized = *change.mutable_positions()->mutable_quantized();
-  *quantized.mutable_lowest() = to_proto(lowest);
-  *quantized.mutable_highest() = to_proto(highest);
-  quantized.set_uint16(steps.data(), steps.size() * sizeof(uint16_t));
+  change.mutable_weights()->set_mesh(mesh.name);
+  change.mutable_weights()->mutable_weights()->Add(weights.begin(), weights.end());
+  return impl_->add(std::move(change));
+}
+
+absl::Status Deformer::morph_to_sphere(const MeshHandle& mesh, float amount) {
+  v1::SceneChange change;
+  change.mutable_sphere()->set_mesh(mesh.name);
+  change.mutable_sphere()->set_amount(amount);
   return impl_->add(std::move(change));
 }
 
@@ -170,6 +215,8 @@ void Deformer::begin() { impl_->begin(); }
 absl::Status Deformer::commit() { return impl_->commit(); }
 absl::StatusOr<uint64_t> Deformer::flush() { return impl_->flush(); }
 
-Deformer Scene::deform() const { return Deformer(std::make_unique<Deformer::Impl>(connection_, name_)); }
+Deformer Scene::deform(const DeformerOptions& options) const {
+  return Deformer(std::make_unique<Deformer::Impl>(connection_, name_, options));
+}
 
 }  // namespace diaphane

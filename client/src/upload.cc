@@ -70,6 +70,13 @@ absl::StatusOr<MeshHandle> upload_mesh(const Connection& connection, const std::
   payload.append(std::span<const TextureCoordinate>(mesh.texture_coordinates));
   payload.append(std::span<const Rgb>(mesh.colors));
   payload.append(mesh.triangles);
+  for (const std::vector<Vec3>& target : mesh.morph_targets) {
+    if (target.size() != mesh.positions.size()) {
+      return absl::InvalidArgumentError(fmt::format("morph_targets: each must have {} displacements, one has {}",
+                                                    mesh.positions.size(), target.size()));
+    }
+    payload.append(std::span<const Vec3>(target));
+  }
 
   v1::UploadMeshRequest request;
   v1::MeshHeader& header = *request.mutable_header();
@@ -81,6 +88,7 @@ absl::StatusOr<MeshHandle> upload_mesh(const Connection& connection, const std::
   header.set_has_normals(!mesh.normals.empty());
   header.set_has_texture_coordinates(!mesh.texture_coordinates.empty());
   header.set_has_colors(!mesh.colors.empty());
+  header.set_morph_target_count(static_cast<uint32_t>(mesh.morph_targets.size()));
   header.set_total_bytes(payload.total_bytes());
   header.set_sha256(payload.sha256());
   header.set_request_id(new_request_id());

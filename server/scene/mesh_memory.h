@@ -25,16 +25,22 @@ constexpr uint64_t attribute_bytes(const MeshCounts& counts) {
          uint64_t{counts.vertex_count};
 }
 
+/// Of geometry::MorphTargets.
+constexpr uint64_t morph_bytes(const MeshCounts& counts) {
+  return sizeof(glm::vec3) * uint64_t{counts.vertex_count} * counts.morph_target_count;
+}
+
 /// Of an upload's payload.
 constexpr uint64_t payload_bytes(const MeshCounts& counts) {
-  return shape_bytes(counts) + attribute_bytes(counts) + sizeof(glm::uvec3) * uint64_t{counts.triangle_count};
+  return shape_bytes(counts) + attribute_bytes(counts) + morph_bytes(counts) +
+         sizeof(glm::uvec3) * uint64_t{counts.triangle_count};
 }
 
 /// At most, while a mesh is uploaded: the payload, what comes of it, and the hash table that finds the welds (16 bytes
 /// and a control byte an entry, of which 7/8 to 7/16 are used) with its index.
 constexpr uint64_t upload_bytes(const MeshCounts& counts) {
-  return payload_bytes(counts) + shape_bytes(counts) + attribute_bytes(counts) + topology_bytes(counts) +
-         44 * uint64_t{counts.vertex_count};
+  return payload_bytes(counts) + shape_bytes(counts) + attribute_bytes(counts) + morph_bytes(counts) +
+         topology_bytes(counts) + 44 * uint64_t{counts.vertex_count};
 }
 
 /// At most, while new positions are uploaded.

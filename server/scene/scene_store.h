@@ -70,12 +70,23 @@ struct MeshPatch {
 struct PositionsPatch {
   std::vector<uint32_t> indices;     ///< empty: all, in order
   std::vector<glm::vec3> positions;  ///< mesh units, one for each
+  bool displacements = false;        ///< from the uploaded positions
+};
+
+/// The uploaded shape, and of each of the mesh's morph targets so much.
+struct WeightsPatch {
+  std::vector<float> weights;
+};
+
+/// The uploaded shape, so far on its way to its bounding sphere: geometry::morphed_to_sphere().
+struct SpherePatch {
+  float amount = 0;
 };
 
 /// One change of an edit: which resource, and what it becomes.
 struct SceneChange {
   std::string name;
-  std::variant<PositionsPatch, MeshPatch, MaterialPatch, LightPatch, EnvironmentPatch> patch;
+  std::variant<PositionsPatch, WeightsPatch, SpherePatch, MeshPatch, MaterialPatch, LightPatch, EnvironmentPatch> patch;
 };
 
 /// How big a mesh will be.
@@ -85,6 +96,7 @@ struct MeshCounts {
   bool has_normals = false;
   bool has_texture_coordinates = false;
   bool has_colors = false;
+  uint32_t morph_target_count = 0;
 };
 
 struct NewMesh {
@@ -93,6 +105,7 @@ struct NewMesh {
   std::shared_ptr<const geometry::MeshTopology> topology;
   std::shared_ptr<const geometry::MeshShape> shape;
   std::shared_ptr<const geometry::SurfaceAttributes> attributes{};  ///< null: none
+  std::shared_ptr<const geometry::MorphTargets> morph_targets{};    ///< null: none
 };
 
 /// A resource after a mutation, and the scene's revision that the mutation made.

@@ -11,8 +11,14 @@ namespace {
 /// A mesh's shape with some of its positions new; its normals, where they were given, are no more.
 absl::StatusOr<geometry::MeshShape> moved(const Mesh& mesh, const PositionsPatch& patch) {
   const uint32_t vertex_count = mesh.topology->vertex_count;
+  const std::vector<glm::vec3>& rest = mesh.topology->uploaded_positions;
+  if (patch.indices.empty() && patch.positions.size() == vertex_count) {
+    geometry::MeshShape shape{patch.positions, {}};
+    if (!patch.displacements) return shape;
+    for (size_t i = 0; i < rest.size(); ++i) shape.positions[i] += rest[i];
+    return shape;
+  }
   if (patch.indices.empty()) {
-    if (patch.positions.size() == vertex_count) return geometry::MeshShape{patch.positions, {}};
     return base::invalid_field("positions", fmt::format("one for each of the mesh's {} vertices", vertex_count),
                                static_cast<double>(patch.positions.size()));
   }
@@ -22,9 +28,29 @@ absl::StatusOr<geometry::MeshShape> moved(const Mesh& mesh, const PositionsPatch
       return base::invalid_field(fmt::format("positions.indices[{}]", i), fmt::format("0..{}", vertex_count - 1),
                                  patch.indices[i]);
     }
-    shape.positions[patch.indices[i]] = patch.positions[i];
+    const uint32_t vertex = patch.indices[i];
+    shape.positions[vertex] = patch.displacements ? rest[vertex] + patch.positions[i] : patch.positions[i];
   }
   return shape;
+}
+
+absl::StatusOr<geometry::MeshShape> morphed(const Mesh& mesh, const WeightsPatch& patch) {
+  const size_t count = mesh.morph_targets != nullptr ? mesh.morph_targets->count : 0;
+  if (count == 0) return base::invalid_field("weights.mesh", "a mesh with morph targets", mesh.name);
+  if (patch.weights.size() != count) {
+    return base::invalid_field("weights.weights", fmt::format("one for each of the mesh's {} morph targets", count),
+                               static_cast<double>(patch.weights.size()));
+  }
+  geometry::MeshShape shape{geometry::morphed(mesh.topology->uploaded_positions, *mesh.morph_targets, patch.weights),
+                            {}};
+  if (absl::Status finite = geometry::check_finite(shape.positions, "weights.weights"); !finite.ok()) return finite;
+  return shape;
+}
+
+/// Whether a change makes a new shape.
+bool reshapes(const SceneChange& change) {
+  return std::holds_alternative<PositionsPatch>(change.patch) || std::holds_alternative<WeightsPatch>(change.patch) ||
+         std::holds_alternative<SpherePatch>(change.patch);
 }
 
 /// What a draft's change is applied to, and with.
@@ -36,7 +62,22 @@ struct Draft {
   absl::Status operator()(const PositionsPatch& patch) const {
     const auto found = find_child(scene.meshes, name);
     if (found == scene.meshes.end()) return not_found({"positions.mesh", name}, "mesh");
-    absl::StatusOr<geometry::MeshShape> shape = moved(**found, patch);
+    return take(found, moved(**found, patch));
+  }
+  absl::Status operator()(const WeightsPatch& patch) const {
+    const auto found = find_child(scene.meshes, name);
+    if (found == scene.meshes.end()) return not_found({"weights.mesh", name}, "mesh");
+    return take(found, morphed(**found, patch));
+  }
+  absl::Status operator()(const SpherePatch& patch) const {
+    const auto found = find_child(scene.meshes, name);
+    if (found == scene.meshes.end()) return not_found({"sphere.mesh", name}, "mesh");
+    return take(found, geometry::MeshShape{
+                           geometry::morphed_to_sphere((*found)->topology->uploaded_positions, patch.amount), {}});
+  }
+  /// Gives the mesh at `found` its shape.
+  absl::Status take(std::vector<std::shared_ptr<const Mesh>>::iterator found,
+                    absl::StatusOr<geometry::MeshShape> shape) const {
     if (!shape.ok()) return shape.status();
     Mesh updated = **found;
     const uint64_t bytes = shape_bytes({updated.topology->vertex_count, 0, false});
@@ -69,7 +110,7 @@ absl::StatusOr<uint64_t> SceneStore::apply(const Reference& scene, std::span<con
   // another name.
   uint64_t bytes = 0;
   for (const SceneChange& change : changes) {
-    if (!std::holds_alternative<PositionsPatch>(change.patch)) continue;
+    if (!reshapes(change)) continue;
     const auto found = find_child((*before)->meshes, change.name);
     if (found != (*before)->meshes.end()) bytes += shape_bytes({(*found)->topology->vertex_count, 0, false});
   }

@@ -49,14 +49,19 @@ absl::StatusOr<Reservation> SceneStore::reserve_mesh(const Reference& parent, co
 }
 
 absl::StatusOr<Changed<Mesh>> SceneStore::create_mesh(const Reference& parent, NewMesh mesh, Reservation reservation) {
-  const MeshCounts counts{mesh.topology->vertex_count, static_cast<uint32_t>(mesh.topology->triangles.size()),
+  const MeshCounts counts{mesh.topology->vertex_count,
+                          static_cast<uint32_t>(mesh.topology->triangles.size()),
                           !mesh.shape->normals.empty(),
                           mesh.attributes != nullptr && !mesh.attributes->texture_coordinates.empty(),
-                          mesh.attributes != nullptr && !mesh.attributes->colors.empty()};
-  reservation.shrink_to(topology_bytes(counts) + shape_bytes(counts) + attribute_bytes(counts));
+                          mesh.attributes != nullptr && !mesh.attributes->colors.empty(),
+                          mesh.morph_targets != nullptr ? static_cast<uint32_t>(mesh.morph_targets->count) : 0};
+  reservation.shrink_to(topology_bytes(counts) + shape_bytes(counts) + attribute_bytes(counts) + morph_bytes(counts));
   Mesh created{{}, std::move(mesh.material), mesh.scene_from_mesh, {}, {}, 0};
   if (mesh.attributes != nullptr) {
     created.attributes = hold(std::move(mesh.attributes), reservation.split(attribute_bytes(counts)));
+  }
+  if (mesh.morph_targets != nullptr) {
+    created.morph_targets = hold(std::move(mesh.morph_targets), reservation.split(morph_bytes(counts)));
   }
   created.shape = hold(std::move(mesh.shape), reservation.split(shape_bytes(counts)));
   created.topology = hold(std::move(mesh.topology), std::move(reservation));

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "geometry/morph.h"
 #include "geometry/shape.h"
 #include "geometry/surface_attributes.h"
 #include "geometry/topology.h"
@@ -104,6 +105,7 @@ struct Mesh {
   std::shared_ptr<const geometry::MeshShape> shape;                 ///< a new object whenever positions change
   uint64_t positions_revision = 0;                                  ///< scene revision at which `shape` last changed
   std::shared_ptr<const geometry::SurfaceAttributes> attributes{};  ///< null: none
+  std::shared_ptr<const geometry::MorphTargets> morph_targets{};    ///< null: none
 };
 
 /// Stages compare the shared pointers and values in here to learn what changed; there is nothing else to compare.

@@ -33,6 +33,9 @@ absl::Status MeshUpload::apply(const Payload& payload, v1::MeshResponse& respons
   if (!arrays->attributes.empty()) {
     mesh_.attributes = std::make_shared<const geometry::SurfaceAttributes>(std::move(arrays->attributes));
   }
+  if (arrays->morph_targets.count > 0) {
+    mesh_.morph_targets = std::make_shared<const geometry::MorphTargets>(std::move(arrays->morph_targets));
+  }
   const auto created = store_.create_mesh({"parent", parent_}, std::move(mesh_), std::move(reservation_));
   if (!created.ok()) return created.status();
   to_proto(*created, response);

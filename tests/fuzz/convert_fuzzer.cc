@@ -15,6 +15,7 @@
 #include "service/convert/scene.h"
 #include "service/convert/status.h"
 #include "service/convert/upload.h"
+#include "service/convert/vertex_positions.h"
 #include "tests/fuzz/promises.h"
 
 namespace diaphane::fuzz {
@@ -124,6 +125,14 @@ void convert(const v1::UpdatePositionsRequest& request, std::string_view bytes) 
   if (is_accepted(spec)) take_payload(*spec, bytes);
 }
 
+void convert(const v1::VertexPositions& request, std::string_view) {
+  const auto patch = service::from_proto(request);
+  if (!is_accepted(patch)) return;
+  require(!patch->positions.empty(), "a position");
+  require(patch->indices.empty() || patch->indices.size() == patch->positions.size(), "a position an index");
+  for (const glm::vec3& position : patch->positions) require(is_finite(position), "finite positions");
+}
+
 template <typename Request>
 void parse(std::string_view message, std::string_view bytes) {
   Request request;
@@ -133,11 +142,17 @@ void parse(std::string_view message, std::string_view bytes) {
 using Parse = void (*)(std::string_view message, std::string_view bytes);
 
 // The order is that of the seeds' first byte.
-constexpr Parse kRequests[] = {parse<v1::RenderFrameRequest>,    parse<v1::CreateLightRequest>,
-                               parse<v1::UpdateLightRequest>,    parse<v1::CreateMaterialRequest>,
-                               parse<v1::UpdateMaterialRequest>, parse<v1::CreateSceneRequest>,
-                               parse<v1::UpdateSceneRequest>,    parse<v1::UpdateMeshRequest>,
-                               parse<v1::UploadMeshRequest>,     parse<v1::UpdatePositionsRequest>};
+constexpr Parse kRequests[] = {parse<v1::RenderFrameRequest>,
+                               parse<v1::CreateLightRequest>,
+                               parse<v1::UpdateLightRequest>,
+                               parse<v1::CreateMaterialRequest>,
+                               parse<v1::UpdateMaterialRequest>,
+                               parse<v1::CreateSceneRequest>,
+                               parse<v1::UpdateSceneRequest>,
+                               parse<v1::UpdateMeshRequest>,
+                               parse<v1::UploadMeshRequest>,
+                               parse<v1::UpdatePositionsRequest>,
+                               parse<v1::VertexPositions>};
 
 }  // namespace
 }  // namespace diaphane::fuzz

@@ -20,6 +20,9 @@ struct MeshData {
   std::vector<TextureCoordinate> texture_coordinates;  ///< empty, or one per position
   std::vector<uint32_t> triangles;  ///< three indices into `positions` per triangle, counter-clockwise from outside
 
+  /// What Deformer::set_weights() drives: per target the displacement of every position, mesh units. At most 256.
+  std::vector<std::vector<Vec3>> morph_targets;
+
   std::optional<size_t> material;  ///< into the `materials` of the LoadedFile that it came with
   /// Mesh units to scene units: column-major 4×4, affine and invertible.
   std::array<float, 16> scene_from_mesh = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};

@@ -175,7 +175,7 @@ class Scene {
   /// Frames as the scene changes.
   FrameStream stream(const StreamOptions& options) const;
   /// A way for live changes. Several may change one scene; each keeps the order of its own.
-  Deformer deform() const;
+  Deformer deform(const DeformerOptions& options = {}) const;
 
   /// Deletes the scene and all that is in it. Runs even once ClientOptions::stop was requested.
   absl::Status remove() const;

@@ -80,6 +80,11 @@ class FrameStream {
   std::unique_ptr<Impl> impl_;
 };
 
+struct DeformerOptions {
+  /// Positions go through meshoptimizer's codec: docs/streaming.md has what that saves and costs.
+  bool compress = false;
+};
+
 /// Live changes of a scene, in order. Calls return once a change is sent, and wait only while too many are not applied;
 /// what could not be sent, because the connection broke, is sent again on the next one. Changes between begin() and
 /// commit() are applied together, as one revision. One thread at a time.
@@ -101,6 +106,14 @@ class Deformer {
   /// (highest − lowest)/65535 lost.
   absl::Status set_quantized_positions(const MeshHandle& mesh, std::span<const Vec3> positions, const Vec3& lowest,
                                        const Vec3& highest);
+  /// The same of displacements from the uploaded positions: compressed, a quarter of the bytes where a body deforms
+  /// smoothly.
+  absl::Status set_quantized_displacements(const MeshHandle& mesh, std::span<const Vec3> displacements,
+                                           const Vec3& lowest, const Vec3& highest);
+  /// The uploaded positions plus, of each of MeshData::morph_targets, the displacements times a weight.
+  absl::Status set_weights(const MeshHandle& mesh, std::span<const float> weights);
+  /// The uploaded positions so far on their way to their bounding sphere, 0..1: the paper's morph (§4.5).
+  absl::Status morph_to_sphere(const MeshHandle& mesh, float amount);
   absl::Status set_material(const MaterialHandle& handle, const Material& material);
   absl::Status set_light(const LightHandle& handle, const Light& light);
 

@@ -1,69 +1,35 @@
 #include "service/convert/edit.h"
 
-#include <cstring>
 #include <utility>
 
 #include "base/status.h"
 #include "fmt/format.h"
-#include "geometry/topology.h"
 #include "service/convert/check.h"
 #include "service/convert/environment.h"
 #include "service/convert/light.h"
 #include "service/convert/material.h"
 #include "service/convert/mesh.h"
+#include "service/convert/vertex_positions.h"
 
 namespace diaphane::service {
 namespace {
 
 constexpr int kMostChanges = 256;
+constexpr double kLargestWeight = 1e6;
 
-absl::Status check_bytes(std::string_view field, const std::string& bytes, size_t each, size_t count) {
-  if (bytes.empty() || bytes.size() % each != 0) {
-    return base::invalid_field(field, fmt::format("whole positions of {} bytes, at least one", each),
-                               fmt::format("{} bytes", bytes.size()));
+absl::StatusOr<scene::WeightsPatch> from_proto(const v1::MorphWeights& message) {
+  scene::WeightsPatch patch{{message.weights().begin(), message.weights().end()}};
+  for (size_t i = 0; i < patch.weights.size(); ++i) {
+    absl::Status status =
+        check_range(fmt::format("weights.weights[{}]", i), patch.weights[i], -kLargestWeight, kLargestWeight);
+    if (!status.ok()) return status;
   }
-  if (count == 0 || bytes.size() == each * count) return absl::OkStatus();
-  return base::invalid_field(field, fmt::format("{} bytes, as many positions as indices", each * count),
-                             fmt::format("{} bytes", bytes.size()));
+  return patch;
 }
 
-absl::StatusOr<std::vector<glm::vec3>> plain_positions(const std::string& bytes, size_t count) {
-  if (absl::Status sized = check_bytes("positions.float32", bytes, sizeof(glm::vec3), count); !sized.ok()) return sized;
-  std::vector<glm::vec3> positions(bytes.size() / sizeof(glm::vec3));
-  std::memcpy(positions.data(), bytes.data(), bytes.size());
-  if (absl::Status finite = geometry::check_finite(positions, "positions.float32"); !finite.ok()) return finite;
-  return positions;
-}
-
-absl::StatusOr<std::vector<glm::vec3>> quantized_positions(const v1::QuantizedPositions& message, size_t count) {
-  using Steps = glm::vec<3, uint16_t>;
-  static_assert(sizeof(Steps) == 6);
-  const std::string& bytes = message.uint16();
-  absl::Status sized = check_bytes("positions.quantized.uint16", bytes, sizeof(Steps), count);
-  if (!sized.ok()) return sized;
-  const auto lowest = position_from_proto(message.lowest(), "positions.quantized.lowest");
-  if (!lowest.ok()) return lowest.status();
-  const auto highest = position_from_proto(message.highest(), "positions.quantized.highest");
-  if (!highest.ok()) return highest.status();
-  std::vector<Steps> steps(bytes.size() / sizeof(Steps));
-  std::memcpy(steps.data(), bytes.data(), bytes.size());
-  std::vector<glm::vec3> positions;
-  positions.reserve(steps.size());
-  // In double, so that the ends are met.
-  const glm::dvec3 first(*lowest), step = (glm::dvec3(*highest) - first) / 65535.0;
-  for (const Steps& s : steps) positions.emplace_back(first + glm::dvec3(s) * step);
-  return positions;
-}
-
-absl::StatusOr<scene::SceneChange> change_of(const v1::VertexPositions& message) {
-  const auto count = static_cast<size_t>(message.indices_size());
-  absl::StatusOr<std::vector<glm::vec3>> positions =
-      base::invalid_field("positions.values", "float32 or quantized", "none");
-  if (message.values_case() == v1::VertexPositions::kFloat32) positions = plain_positions(message.float32(), count);
-  if (message.has_quantized()) positions = quantized_positions(message.quantized(), count);
-  if (!positions.ok()) return positions.status();
-  return scene::SceneChange{message.mesh(), scene::PositionsPatch{{message.indices().begin(), message.indices().end()},
-                                                                  *std::move(positions)}};
+absl::StatusOr<scene::SpherePatch> from_proto(const v1::SphereMorph& message) {
+  if (absl::Status status = check_range("sphere.amount", message.amount(), 0, 1); !status.ok()) return status;
+  return scene::SpherePatch{message.amount()};
 }
 
 template <typename Patch>
@@ -75,7 +41,11 @@ absl::StatusOr<scene::SceneChange> change_of(const std::string& name, absl::Stat
 absl::StatusOr<scene::SceneChange> from_proto(const v1::SceneChange& message) {
   switch (message.change_case()) {
     case v1::SceneChange::kPositions:
-      return change_of(message.positions());
+      return change_of(message.positions().mesh(), service::from_proto(message.positions()));
+    case v1::SceneChange::kWeights:
+      return change_of(message.weights().mesh(), from_proto(message.weights()));
+    case v1::SceneChange::kSphere:
+      return change_of(message.sphere().mesh(), from_proto(message.sphere()));
     case v1::SceneChange::kMesh:
       return change_of(message.mesh().mesh().name(),
                        service::from_proto(message.mesh().mesh(), message.mesh().update_mask()));
@@ -90,7 +60,7 @@ absl::StatusOr<scene::SceneChange> from_proto(const v1::SceneChange& message) {
     case v1::SceneChange::CHANGE_NOT_SET:
       break;
   }
-  return base::invalid_field("change", "positions, mesh, material, light or environment", "none");
+  return base::invalid_field("change", "positions, weights, sphere, mesh, material, light or environment", "none");
 }
 
 }  // namespace

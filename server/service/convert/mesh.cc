@@ -75,6 +75,7 @@ void to_proto(const scene::Mesh& mesh, v1::Mesh& message) {
   message.set_triangle_count(static_cast<uint32_t>(mesh.topology->triangles.size()));
   message.set_has_normals(!mesh.shape->normals.empty());
   message.set_positions_revision(mesh.positions_revision);
+  if (mesh.morph_targets != nullptr) message.set_morph_target_count(static_cast<uint32_t>(mesh.morph_targets->count));
   if (mesh.attributes == nullptr) return;
   message.set_has_texture_coordinates(!mesh.attributes->texture_coordinates.empty());
   message.set_has_colors(!mesh.attributes->colors.empty());

@@ -2,6 +2,7 @@
 
 #include "encode/h264.h"
 #include "service/convert/frame.h"
+#include "service/convert/upload.h"
 
 namespace diaphane::service {
 
@@ -29,6 +30,7 @@ void to_proto(const ServiceLimits& limits, v1::Limits& message) {
   message.set_max_mesh_bytes(limits.scene.max_mesh_bytes);
   message.set_max_chunk_bytes(kMaxChunkBytes);
   message.set_max_queued_frames(limits.max_queued_frames);
+  message.set_max_morph_targets_per_mesh(kMaxMorphTargets);
   message.set_max_reference_pixels(kMaxReferencePixels);
   message.set_max_reference_seconds(absl::ToDoubleSeconds(limits.max_reference_time));
 }

@@ -59,8 +59,12 @@ absl::Status check_values(const std::vector<T>& values, std::string_view field, 
 
 absl::StatusOr<PayloadSpec> from_proto(const v1::MeshHeader& message) {
   if (message.triangle_count() == 0) return base::invalid_field("triangle_count", "at least 1", 0);
+  if (message.morph_target_count() > kMaxMorphTargets) {
+    return base::invalid_field("morph_target_count", fmt::format("at most {}", kMaxMorphTargets),
+                               message.morph_target_count());
+  }
   return make_spec({message.vertex_count(), message.triangle_count(), message.has_normals(),
-                    message.has_texture_coordinates(), message.has_colors()},
+                    message.has_texture_coordinates(), message.has_colors(), message.morph_target_count()},
                    message.total_bytes(), message.sha256());
 }
 
@@ -77,6 +81,11 @@ absl::StatusOr<PayloadArrays> read_arrays(const PayloadSpec& spec, std::span<con
   if (spec.counts.has_texture_coordinates) coordinates = take<glm::vec2>(bytes, spec.counts.vertex_count);
   if (spec.counts.has_colors) colors = take<glm::vec3>(bytes, spec.counts.vertex_count);
   arrays.triangles = take<glm::uvec3>(bytes, spec.counts.triangle_count);
+  arrays.morph_targets.count = spec.counts.morph_target_count;
+  arrays.morph_targets.displacements =
+      take<glm::vec3>(bytes, size_t{spec.counts.vertex_count} * spec.counts.morph_target_count);
+  absl::Status displaced = geometry::check_finite(arrays.morph_targets.displacements, "morph_targets");
+  if (!displaced.ok()) return displaced;
   if (absl::Status finite = geometry::check_finite(arrays.positions, "positions"); !finite.ok()) return finite;
   if (absl::Status finite = geometry::check_finite(arrays.normals, "normals"); !finite.ok()) return finite;
   absl::Status within =

@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "diaphane/v1/scene_service.pb.h"
+#include "geometry/morph.h"
 #include "geometry/surface_attributes.h"
 #include "glm/vec3.hpp"
 #include "scene/scene_store.h"
@@ -31,7 +32,11 @@ struct PayloadArrays {
   std::vector<glm::vec3> normals;    ///< [vertex_count] or empty
   geometry::SurfaceAttributes attributes;
   std::vector<glm::uvec3> triangles;  ///< [triangle_count]
+  geometry::MorphTargets morph_targets;
 };
+
+/// Of one mesh.
+inline constexpr uint32_t kMaxMorphTargets = 256;
 
 /// `bytes` are `spec.total_bytes`. INVALID_ARGUMENT for a position or normal that is not finite, or an
 /// attribute that is out of range.

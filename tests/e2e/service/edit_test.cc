@@ -3,6 +3,8 @@
 
 #include <random>
 
+#include "glm/geometric.hpp"
+#include "meshoptimizer.h"
 #include "tests/e2e/service/test_server.h"
 
 namespace diaphane::e2e {
@@ -164,6 +166,120 @@ TEST_F(EditTest, TakesPositionsInStepsOfABox) {
   EXPECT_NEAR(found[2].x, 1, 8.0 / 65535);
   EXPECT_FLOAT_EQ(found[3].y, 1.0f / 65535);
   EXPECT_TRUE(end(*stream).ok());
+}
+
+/// All positions of the test's mesh through the codec.
+v1::SceneChange compressed(const std::string& mesh, const std::vector<float>& positions) {
+  v1::SceneChange change;
+  const size_t count = positions.size() / 3;
+  std::string bytes(meshopt_encodeVertexBufferBound(count, 12), '\0');
+  bytes.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(),
+                                          positions.data(), count, 12));
+  change.mutable_positions()->set_mesh(mesh);
+  change.mutable_positions()->set_float32(bytes);
+  change.mutable_positions()->set_meshopt_count(static_cast<uint32_t>(count));
+  return change;
+}
+
+TEST_F(EditTest, DecodesWhatIsCompressedAndRefusesWhatIsNot) {
+  const std::vector<float> to{1, 2, 3, 4, 5, 6, 7, 8, 9, 0.1f, 0.2f, 0.3f};
+  {
+    grpc::ClientContext context;
+    const auto stream = open(&context);
+    send(*stream, 1, {compressed(mesh_.name(), to)});
+    wait_for(*stream, 1);
+    EXPECT_TRUE(end(*stream).ok());
+  }
+  EXPECT_EQ(server_positions()[3], glm::vec3(0.1f, 0.2f, 0.3f));
+  v1::SceneChange change = compressed(mesh_.name(), to);
+  change.mutable_positions()->set_meshopt_count(4'000'000'000u);
+  expect_refused({change}, grpc::StatusCode::INVALID_ARGUMENT, "changes[0].positions.meshopt_count");
+  change = compressed(mesh_.name(), to);
+  change.mutable_positions()->set_meshopt_count(5);
+  expect_refused({change}, grpc::StatusCode::INVALID_ARGUMENT, "changes[0].positions");
+  change = compressed(mesh_.name(), to);
+  change.mutable_positions()->mutable_float32()->resize(20);
+  expect_refused({change}, grpc::StatusCode::INVALID_ARGUMENT, "changes[0].positions.float32");
+  change = compressed(mesh_.name(), to);
+  change.mutable_positions()->add_indices(0);
+  expect_refused({change}, grpc::StatusCode::INVALID_ARGUMENT, "changes[0].positions.meshopt_count");
+  EXPECT_EQ(server_positions()[0], glm::vec3(1, 2, 3));
+}
+
+TEST_F(EditTest, DisplacementsAreFromTheUploadedPositionsHoweverOftenTheyCome) {
+  v1::SceneChange change = moved({1}, {10, 0, 0.5f});
+  change.mutable_positions()->set_displacements(true);
+  grpc::ClientContext context;
+  const auto stream = open(&context);
+  send(*stream, 1, {moved({}, std::vector<float>(12, 9))});
+  send(*stream, 2, {change});
+  send(*stream, 3, {change});
+  wait_for(*stream, 3);
+  EXPECT_EQ(server_positions()[0], glm::vec3(9));
+  EXPECT_EQ(server_positions()[1], glm::vec3(11, 0, 0.5f));
+  EXPECT_TRUE(end(*stream).ok());
+}
+
+TEST_F(EditTest, WeightsDriveTheMorphTargetsOfAMesh) {
+  TestMesh data;
+  data.morph_targets = {std::vector<float>(12, 1), std::vector<float>(12, 0)};
+  data.morph_targets[1][3] = 8;  // x of vertex 1
+  v1::MeshResponse response;
+  ASSERT_TRUE(upload(data.header(scene_, mesh_.material()), data.payload(), &response).ok());
+  mesh_ = response.mesh();
+  EXPECT_EQ(mesh_.morph_target_count(), 2u);
+  const auto weighted = [&](std::initializer_list<float> weights) {
+    v1::SceneChange change;
+    change.mutable_weights()->set_mesh(mesh_.name());
+    for (const float weight : weights) change.mutable_weights()->add_weights(weight);
+    return change;
+  };
+  grpc::ClientContext context;
+  const auto stream = open(&context);
+  send(*stream, 1, {moved({0}, {5, 5, 5}), weighted({2, 0.5f})});
+  wait_for(*stream, 1);
+  EXPECT_EQ(server_positions()[0], glm::vec3(2));
+  EXPECT_EQ(server_positions()[1], glm::vec3(7, 2, 2));
+  EXPECT_TRUE(end(*stream).ok());
+  expect_refused({weighted({1})}, grpc::StatusCode::INVALID_ARGUMENT, "changes[0].weights.weights");
+  expect_refused({weighted({1, NAN})}, grpc::StatusCode::INVALID_ARGUMENT, "changes[0].weights.weights[1]");
+  expect_refused({weighted({1, 2e6f})}, grpc::StatusCode::INVALID_ARGUMENT, "changes[0].weights.weights[1]");
+  mesh_ = create_mesh(scene_);
+  expect_refused({weighted({})}, grpc::StatusCode::INVALID_ARGUMENT, "changes[0].weights.mesh");
+  mesh_.set_name(scene_ + "/meshes/99");
+  expect_refused({weighted({})}, grpc::StatusCode::NOT_FOUND, "changes[0].weights.mesh");
+}
+
+TEST_F(EditTest, RefusesMorphTargetsThatAreTooManyOrNotFinite) {
+  TestMesh data;
+  data.morph_targets = {std::vector<float>(12, INFINITY)};
+  v1::MeshResponse response;
+  const grpc::Status infinite = upload(data.header(scene_, mesh_.material()), data.payload(), &response);
+  EXPECT_EQ(error_info(infinite).metadata().at("field"), "morph_targets[0].x");
+  data.morph_targets.assign(257, std::vector<float>(12, 0));
+  const grpc::Status many = upload(data.header(scene_, mesh_.material()), data.payload(), &response);
+  EXPECT_EQ(many.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(error_info(many).metadata().at("field"), "morph_target_count");
+}
+
+TEST_F(EditTest, MorphsToTheBoundingSphereAndBack) {
+  const std::vector<glm::vec3> rest = server_positions();
+  const auto morphed = [&](float amount) {
+    v1::SceneChange change;
+    change.mutable_sphere()->set_mesh(mesh_.name());
+    change.mutable_sphere()->set_amount(amount);
+    return change;
+  };
+  grpc::ClientContext context;
+  const auto stream = open(&context);
+  send(*stream, 1, {morphed(1)});
+  wait_for(*stream, 1);
+  for (const glm::vec3& p : server_positions()) EXPECT_NEAR(glm::distance(p, glm::vec3(0.5f)), std::sqrt(0.75f), 1e-6);
+  send(*stream, 2, {morphed(0)});
+  wait_for(*stream, 2);
+  EXPECT_EQ(server_positions(), rest);
+  EXPECT_TRUE(end(*stream).ok());
+  expect_refused({morphed(1.5f)}, grpc::StatusCode::INVALID_ARGUMENT, "changes[0].sphere.amount");
 }
 
 TEST_F(EditTest, RefusesAWholeEditForOneWrongChangeAndNamesIt) {

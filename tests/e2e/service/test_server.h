@@ -44,6 +44,7 @@ struct TestMesh {
   std::vector<float> texture_coordinates;
   std::vector<float> colors;
   std::vector<uint32_t> triangles = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+  std::vector<std::vector<float>> morph_targets;
 
   std::string payload() const {
     std::string bytes;
@@ -55,6 +56,7 @@ struct TestMesh {
     add(texture_coordinates);
     add(colors);
     add(triangles);
+    for (const std::vector<float>& target : morph_targets) add(target);
     return bytes;
   }
 
@@ -67,6 +69,7 @@ struct TestMesh {
     header.set_has_normals(!normals.empty());
     header.set_has_texture_coordinates(!texture_coordinates.empty());
     header.set_has_colors(!colors.empty());
+    header.set_morph_target_count(static_cast<uint32_t>(morph_targets.size()));
     header.set_total_bytes(payload().size());
     header.set_sha256(service::sha256(payload()));
     return header;

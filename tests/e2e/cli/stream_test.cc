@@ -16,7 +16,11 @@ using testing::StartsWith;
 class CliStreamTest : public CliWithServerTest {
  protected:
   Finished stream(const std::vector<std::string>& more) const {
-    std::vector<std::string> words{"stream", "cube.obj", "--height-mm", "20",
+    // A double pyramid: unlike a cube's, its corners are not on their bounding sphere.
+    write_file(folder_ / "long.obj",
+               "v 2 0 0\nv -2 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
+               "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n");
+    std::vector<std::string> words{"stream", "long.obj", "--height-mm", "20",
                                    "--size", "64x48",    "--technique", "lambert"};
     words.insert(words.end(), more.begin(), more.end());
     return run(with_server(words));

@@ -55,12 +55,15 @@ class FrameStream::Impl {
   absl::StatusOr<StreamedFrame> next() {
     while (true) {
       if (absl::Status opened = open(); !opened.ok()) return opened;
+      if (frames_in_flight_ == 0 && !asked_) grant_one();
+      asked_ = true;
       v1::StreamFramesResponse response;
       while (stream_->Read(&response)) {
         reopening_.succeeded();
         if (!response.has_frame()) continue;
         came_ = true;
-        grant_one();
+        asked_ = false;
+        if (frames_in_flight_ > 0) grant_one();
         v1::StreamedFrame& frame = *response.mutable_frame();
         return StreamedFrame{from_proto(std::move(*frame.mutable_frame())), frame.view_sequence(), frame.at_rest(),
                              frame.reduced(), frame.key_frame()};
@@ -95,6 +98,7 @@ class FrameStream::Impl {
     part.mutable_opening()->set_scene(scene_);
     *part.mutable_opening()->mutable_view() = view_;
     part.mutable_opening()->set_credits(frames_in_flight_);
+    asked_ = false;
     part.mutable_opening()->set_every_revision(every_revision_);
     stream_->Write(part);
     return absl::OkStatus();
@@ -119,8 +123,9 @@ class FrameStream::Impl {
   const std::string scene_;
   const uint32_t frames_in_flight_;
   const bool every_revision_;
-  bool came_ = false;  // a frame
-  std::mutex mutex_;   // of what is written, and of the pointers; reading needs none
+  bool came_ = false;   // a frame
+  bool asked_ = false;  // for the one that next() waits for, where none are in flight
+  std::mutex mutex_;    // of what is written, and of the pointers; reading needs none
   v1::StreamView view_;
   std::optional<grpc::ClientContext> context_;
   std::unique_ptr<grpc::ClientReaderWriter<v1::StreamFramesRequest, v1::StreamFramesResponse>> stream_;

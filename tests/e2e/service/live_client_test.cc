@@ -118,6 +118,26 @@ TEST_F(LiveClientTest, CompressedSparseEditsOverRestartedStreamsAgreeToTheBitOrT
   }
 }
 
+TEST_F(LiveClientTest, AFrameThatIsAskedForShowsWhatIsNewestThen) {
+  StreamOptions on_demand = options();
+  on_demand.view.lossless_at_rest = false;
+  on_demand.frames_in_flight = 0;
+  FrameStream stream = scene_->stream(on_demand);
+  ASSERT_TRUE(stream.next().ok());
+  Deformer deformer = scene_->deform();
+  for (int round = 0; round < 5; ++round) {
+    uint64_t newest = 0;
+    for (int i = 0; i < 20; ++i) {
+      ASSERT_TRUE(deformer.set_positions(body_, mesh_.positions).ok());
+      newest = deformer.flush().value();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_EQ(stream.next()->frame.scene_revision, newest);
+  }
+  // None but those that were asked for were drawn.
+  EXPECT_EQ(control_->started(), 6);
+}
+
 TEST_F(LiveClientTest, MorphsByWeightsAndToTheSphere) {
   mesh_.morph_targets = {std::vector<Vec3>(mesh_.positions.size(), {0, 0, 2})};
   body_ = *scene_->add_mesh(mesh_, {.material = material_});

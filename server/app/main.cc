@@ -15,6 +15,7 @@ int run(const Options& options) {
   base::set_log_level(options.log_level);
   log_library_messages();
   raise_file_limit();
+  keep_freed_memory();
   auto server = Server::start(options.server, [&] { return render::make_gl_renderer(options.renderer); });
   if (!server.ok()) {
     std::fprintf(stderr, "diaphane-server: %s\n", std::string(server.status().message()).c_str());

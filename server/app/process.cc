@@ -1,5 +1,6 @@
 #include "app/process.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <string>
@@ -33,6 +34,12 @@ void raise_file_limit() {
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
   limit.rlim_cur = limit.rlim_max;
   if (setrlimit(RLIMIT_NOFILE, &limit) != 0) spdlog::warn("open files stay limited limit={}", limit.rlim_cur);
+}
+
+void keep_freed_memory() {
+  constexpr int kLargestKept = 64 << 20, kMostKept = 256 << 20;
+  mallopt(M_MMAP_THRESHOLD, kLargestKept);
+  mallopt(M_TRIM_THRESHOLD, kMostKept);
 }
 
 void log_library_messages() {

@@ -22,6 +22,8 @@ namespace diaphane::app {
 namespace {
 
 constexpr size_t kUploadThreads = 2;
+constexpr int kLookaheadBytes = 4 << 20;
+constexpr int kHttp2FrameBytes = 1 << 20;
 constexpr size_t kMaxWaitingUploads = 64;
 constexpr size_t kVideoThreads = 2;
 constexpr size_t kMaxWaitingVideo = 256;    // one a stream
@@ -96,6 +98,9 @@ absl::Status Server::listen(const ServerOptions& options) {
   // Two servers would share a port in silence.
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMaxConcurrentStreams);
+  // An edit of a large mesh is megabytes: it comes whole, in few frames, without waiting for the window to open.
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, kLookaheadBytes);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_FRAME_SIZE, kHttp2FrameBytes);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
   // A Unix socket is for its owner alone.

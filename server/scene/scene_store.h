@@ -188,7 +188,7 @@ class SceneStore {
 
   /// Applies all changes as one revision, or none: the error of the first that cannot be, its field with "changes[i]."
   /// before it. Returns the new revision.
-  absl::StatusOr<uint64_t> apply(const Reference& scene, std::span<const SceneChange> changes);
+  absl::StatusOr<uint64_t> apply(const Reference& scene, std::vector<SceneChange> changes);
 
   /// Told of a scene's every revision, in order, and at last nothing, when the scene is deleted. Called with the
   /// store's lock held: it must be quick, and must not call the store.

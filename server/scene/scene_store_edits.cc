@@ -9,11 +9,11 @@ namespace diaphane::scene {
 namespace {
 
 /// A mesh's shape with some of its positions new; its normals, where they were given, are no more.
-absl::StatusOr<geometry::MeshShape> moved(const Mesh& mesh, const PositionsPatch& patch) {
+absl::StatusOr<geometry::MeshShape> moved(const Mesh& mesh, PositionsPatch& patch) {
   const uint32_t vertex_count = mesh.topology->vertex_count;
   const std::vector<glm::vec3>& rest = mesh.topology->uploaded_positions;
   if (patch.indices.empty() && patch.positions.size() == vertex_count) {
-    geometry::MeshShape shape{patch.positions, {}};
+    geometry::MeshShape shape{std::move(patch.positions), {}};
     if (!patch.displacements) return shape;
     for (size_t i = 0; i < rest.size(); ++i) shape.positions[i] += rest[i];
     return shape;
@@ -59,7 +59,7 @@ struct Draft {
   const std::string& name;
   Reservation& reservation;
 
-  absl::Status operator()(const PositionsPatch& patch) const {
+  absl::Status operator()(PositionsPatch& patch) const {
     const auto found = find_child(scene.meshes, name);
     if (found == scene.meshes.end()) return not_found({"positions.mesh", name}, "mesh");
     return take(found, moved(**found, patch));
@@ -103,7 +103,7 @@ struct Draft {
 
 }  // namespace
 
-absl::StatusOr<uint64_t> SceneStore::apply(const Reference& scene, std::span<const SceneChange> changes) {
+absl::StatusOr<uint64_t> SceneStore::apply(const Reference& scene, std::vector<SceneChange> changes) {
   const absl::StatusOr<SnapshotPtr> before = this->scene(scene);
   if (!before.ok()) return before.status();
   // Counted before the lock, of the meshes that are there; one that comes in between has the same number of vertices or

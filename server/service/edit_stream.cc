@@ -69,9 +69,9 @@ absl::Status EditStream::apply(const v1::SceneEdit& edit) {
     return base::invalid_field("edit.sequence", fmt::format("{}, after {}", *sequence_ + 1, *sequence_),
                                fmt::format("{}", edit.sequence()));
   }
-  const auto changes = from_proto(edit);
+  auto changes = from_proto(edit);
   if (!changes.ok()) return changes.status();
-  const absl::StatusOr<uint64_t> revision = store_.apply({"scene", scene_}, *changes);
+  const absl::StatusOr<uint64_t> revision = store_.apply({"scene", scene_}, *std::move(changes));
   if (!revision.ok()) return revision.status();
   sequence_ = edit.sequence();
   const absl::MutexLock lock(&mutex_);

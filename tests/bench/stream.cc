@@ -16,6 +16,8 @@
 #include "diaphane/private_server.h"
 #include "diaphane/readers.h"
 #include "nlohmann/json.hpp"
+#include "render/gl_renderer.h"
+#include "tests/bench/in_process.h"
 
 namespace diaphane {
 namespace {
@@ -49,14 +51,15 @@ std::vector<Vec3> leaning(const MeshData& mesh, const Bounds& bounds, int frame)
 }
 
 struct Measured {
-  std::vector<double> latency_ms, overhead_ms, encode_ms;
+  std::vector<double> latency_ms, in_process_ms, overhead_ms, encode_ms, rest_ms;
   std::map<std::string, std::vector<double>> stages_ms;
   double frames_per_second = 0;
 };
 
-/// One edit, then the frame that shows it, and so on: nothing waits for anything else.
+/// One edit, then the frame that shows it, then the same frame in this process, and so on: nothing waits for anything
+/// else.
 absl::Status measure_latency(const Scene& scene, const MeshHandle& body, const MeshData& mesh, const Bounds& bounds,
-                             const StreamOptions& options, int frames, Measured* out) {
+                             const StreamOptions& options, bench::InProcess& in_process, int frames, Measured* out) {
   FrameStream stream = scene.stream(options);
   Deformer deformer = scene.deform();
   for (int i = -3; i < frames; ++i) {
@@ -68,18 +71,38 @@ absl::Status measure_latency(const Scene& scene, const MeshHandle& body, const M
     absl::StatusOr<StreamedFrame> frame = stream.next();
     while (frame.ok() && frame->frame.scene_revision < *revision) frame = stream.next();
     if (!frame.ok()) return frame.status();
-    if (i < 0) continue;
     const double latency = ms_since(begin);
-    double stages = 0, encode = 0;
+    const absl::StatusOr<double> here = in_process.frame_ms(positions, options.view.camera, options.view.size);
+    if (!here.ok()) return here.status();
+    if (i < 0) continue;
+    double encode = 0;
     for (const StageTime& stage : frame->frame.stages) {
-      if (stage.stage == "queue") continue;
-      stages += stage.milliseconds;
       if (stage.stage == "encode") encode = stage.milliseconds;
-      out->stages_ms[stage.stage].push_back(stage.milliseconds);
+      if (stage.stage != "queue") out->stages_ms[stage.stage].push_back(stage.milliseconds);
     }
     out->latency_ms.push_back(latency);
-    out->overhead_ms.push_back(latency - stages);
+    out->in_process_ms.push_back(*here);
+    out->overhead_ms.push_back(latency - encode - *here);
     out->encode_ms.push_back(encode);
+  }
+  return absl::OkStatus();
+}
+
+/// From the last of some edits to the lossless frame.
+absl::Status measure_rest(const Scene& scene, const MeshHandle& body, const MeshData& mesh, const Bounds& bounds,
+                          StreamOptions options, Measured* out) {
+  options.view.lossless_at_rest = true;
+  FrameStream stream = scene.stream(options);
+  Deformer deformer = scene.deform();
+  for (int i = 0; i < 5; ++i) {
+    if (absl::Status sent = deformer.set_positions(body, leaning(mesh, bounds, i)); !sent.ok()) return sent;
+    const absl::StatusOr<uint64_t> revision = deformer.flush();
+    if (!revision.ok()) return revision.status();
+    const Clock::time_point begin = Clock::now();
+    absl::StatusOr<StreamedFrame> frame = stream.next();
+    while (frame.ok() && !(frame->at_rest && frame->frame.scene_revision == *revision)) frame = stream.next();
+    if (!frame.ok()) return frame.status();
+    out->rest_ms.push_back(ms_since(begin));
   }
   return absl::OkStatus();
 }
@@ -110,6 +133,8 @@ absl::Status measure_rate(const Scene& scene, const MeshHandle& body, const Mesh
 }
 
 absl::Status run(const Settings& settings) {
+  const auto renderer = render::make_gl_renderer({});
+  if (!renderer.ok()) return renderer.status();
   const absl::StatusOr<PrivateServer> server = PrivateServer::start();
   if (!server.ok()) return server.status();
   const absl::StatusOr<Client> client = Client::connect(server->address());
@@ -117,11 +142,14 @@ absl::Status run(const Settings& settings) {
   std::printf(
       "Dense positions of every frame to a server in another process, JPEG (quality 80) back, marble, integral "
       "normal,\n"
-      "medians of %d, ms. Latency: from the call that sends new positions to the frame that shows them. Way: latency\n"
-      "without the server's stages: both directions, hashing nothing, queues, and the client's own copies.\n",
+      "medians of %d, ms. Latency: from the call that sends new positions to the frame that shows them. Here: the "
+      "same\n"
+      "frame by the renderer in this process, after it. Beyond: latency without that and without encoding. Rest: from "
+      "the\n"
+      "last edit to the lossless PNG.\n",
       settings.frames);
-  std::printf("%-22s %-9s | %6s | %8s %8s | %7s %7s | %7s\n", "mesh", "size", "fps", "latency", "p99", "way", "p99",
-              "encode");
+  std::printf("%-22s %-9s | %6s | %8s %8s | %8s | %7s | %7s %7s | %6s\n", "mesh", "size", "fps", "latency", "p99",
+              "here", "encode", "beyond", "p99", "rest");
   nlohmann::json rows = nlohmann::json::array();
   for (const std::string& name : settings.meshes) {
     const absl::StatusOr<LoadedFile> file = read_mesh_file(settings.folder + "/" + name);
@@ -141,24 +169,31 @@ absl::Status run(const Settings& settings) {
       options.view.camera = frame_camera(bounds);
       options.view.lossless_at_rest = false;
       const Vec3& eye = options.view.camera.eye;
-      const auto light = scene->add_light(PointLight{{eye.x + 1, eye.y + 1, eye.z}, {20000, 20000, 20000}});
+      const PointLight lamp{{eye.x + 1, eye.y + 1, eye.z}, {20000, 20000, 20000}};
+      const auto light = scene->add_light(lamp);
       if (!light.ok()) return light.status();
+      bench::InProcess in_process(**renderer, mesh, 50 / (bounds.highest.y - bounds.lowest.y), lamp);
       Measured measured;
-      absl::Status status = measure_latency(*scene, *body, mesh, bounds, options, settings.frames, &measured);
+      absl::Status status =
+          measure_latency(*scene, *body, mesh, bounds, options, in_process, settings.frames, &measured);
+      if (status.ok()) status = measure_rest(*scene, *body, mesh, bounds, options, &measured);
       if (status.ok()) status = measure_rate(*scene, *body, mesh, bounds, options, settings.frames, &measured);
       if (!status.ok()) return status;
       if (absl::Status removed = scene->remove(); !removed.ok()) return removed;
-      std::printf("%-22s %-9s | %6.1f | %8.2f %8.2f | %7.2f %7.2f | %7.2f\n", name.c_str(), size.c_str(),
-                  measured.frames_per_second, quantile(measured.latency_ms, 0.5), quantile(measured.latency_ms, 0.99),
-                  quantile(measured.overhead_ms, 0.5), quantile(measured.overhead_ms, 0.99),
-                  quantile(measured.encode_ms, 0.5));
+      std::printf("%-22s %-9s | %6.1f | %8.2f %8.2f | %8.2f | %7.2f | %7.2f %7.2f | %6.0f\n", name.c_str(),
+                  size.c_str(), measured.frames_per_second, quantile(measured.latency_ms, 0.5),
+                  quantile(measured.latency_ms, 0.99), quantile(measured.in_process_ms, 0.5),
+                  quantile(measured.encode_ms, 0.5), quantile(measured.overhead_ms, 0.5),
+                  quantile(measured.overhead_ms, 0.99), quantile(measured.rest_ms, 0.5));
       std::fflush(stdout);
       nlohmann::json row{
           {"mesh", name},
           {"size", size},
           {"frames_per_second", measured.frames_per_second},
           {"latency_ms", {{"p50", quantile(measured.latency_ms, 0.5)}, {"p99", quantile(measured.latency_ms, 0.99)}}},
-          {"way_ms", {{"p50", quantile(measured.overhead_ms, 0.5)}, {"p99", quantile(measured.overhead_ms, 0.99)}}},
+          {"in_process_ms", quantile(measured.in_process_ms, 0.5)},
+          {"rest_ms", quantile(measured.rest_ms, 0.5)},
+          {"beyond_ms", {{"p50", quantile(measured.overhead_ms, 0.5)}, {"p99", quantile(measured.overhead_ms, 0.99)}}},
           {"positions_bytes", {{"float32", 12 * mesh.positions.size()}, {"quantized", 6 * mesh.positions.size()}}},
           {"stages_ms", nlohmann::json::object()}};
       for (const auto& [stage, values] : measured.stages_ms) row["stages_ms"][stage] = quantile(values, 0.5);

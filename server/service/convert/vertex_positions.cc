@@ -18,19 +18,24 @@ static_assert(sizeof(glm::vec3) == 12 && sizeof(Steps) == 6);
 // The codec gives each sixteen bytes of a kind two bits at least.
 constexpr uint64_t kMostExpansion = 64;
 
-/// The elements of `bytes`, `each` bytes long: as they are, or decoded from the codec's `stride`.
-absl::StatusOr<std::string> elements_of(std::string_view field, const std::string& bytes, size_t each, size_t stride,
-                                        const v1::VertexPositions& message) {
+/// The elements of `bytes`, as they are or out of the codec, where each takes `stride` bytes.
+template <typename T>
+absl::StatusOr<std::vector<T>> elements_of(std::string_view field, const std::string& bytes, size_t stride,
+                                           const v1::VertexPositions& message) {
   const auto indices = static_cast<uint64_t>(message.indices_size());
   const uint64_t coded = message.meshopt_count();
   if (coded == 0) {
-    if (bytes.empty() || bytes.size() % each != 0) {
-      return base::invalid_field(field, fmt::format("whole positions of {} bytes, at least one", each),
+    if (bytes.empty() || bytes.size() % sizeof(T) != 0) {
+      return base::invalid_field(field, fmt::format("whole positions of {} bytes, at least one", sizeof(T)),
                                  fmt::format("{} bytes", bytes.size()));
     }
-    if (indices == 0 || bytes.size() == each * indices) return bytes;
-    return base::invalid_field(field, fmt::format("{} bytes, as many positions as indices", each * indices),
-                               fmt::format("{} bytes", bytes.size()));
+    if (indices != 0 && bytes.size() != sizeof(T) * indices) {
+      return base::invalid_field(field, fmt::format("{} bytes, as many positions as indices", sizeof(T) * indices),
+                                 fmt::format("{} bytes", bytes.size()));
+    }
+    std::vector<T> elements(bytes.size() / sizeof(T));
+    std::memcpy(elements.data(), bytes.data(), bytes.size());
+    return elements;
   }
   if (indices != 0 && indices != coded) {
     return base::invalid_field("positions.meshopt_count", fmt::format("{}, as many as indices", indices),
@@ -49,38 +54,32 @@ absl::StatusOr<std::string> elements_of(std::string_view field, const std::strin
                                fmt::format("{} elements of {} bytes by meshoptimizer's vertex codec", coded, stride),
                                fmt::format("{} bytes that are not", bytes.size()));
   }
-  if (stride == each) return decoded;
-  for (uint64_t i = 0; i < coded; ++i) std::memmove(&decoded[i * each], &decoded[i * stride], each);
-  decoded.resize(coded * each);
-  return decoded;
+  std::vector<T> elements(coded);
+  for (uint64_t i = 0; i < coded; ++i) std::memcpy(&elements[i], &decoded[i * stride], sizeof(T));
+  return elements;
 }
 
 absl::StatusOr<std::vector<glm::vec3>> plain_positions(const v1::VertexPositions& message) {
-  const absl::StatusOr<std::string> bytes =
-      elements_of("positions.float32", message.float32(), sizeof(glm::vec3), sizeof(glm::vec3), message);
-  if (!bytes.ok()) return bytes.status();
-  std::vector<glm::vec3> positions(bytes->size() / sizeof(glm::vec3));
-  std::memcpy(positions.data(), bytes->data(), bytes->size());
-  if (absl::Status finite = geometry::check_finite(positions, "positions.float32"); !finite.ok()) return finite;
+  auto positions = elements_of<glm::vec3>("positions.float32", message.float32(), sizeof(glm::vec3), message);
+  if (!positions.ok()) return positions.status();
+  if (absl::Status finite = geometry::check_finite(*positions, "positions.float32"); !finite.ok()) return finite;
   return positions;
 }
 
 absl::StatusOr<std::vector<glm::vec3>> quantized_positions(const v1::VertexPositions& message) {
   const v1::QuantizedPositions& quantized = message.quantized();
-  const absl::StatusOr<std::string> bytes =
-      elements_of("positions.quantized.uint16", quantized.uint16(), sizeof(Steps), 4 * sizeof(uint16_t), message);
-  if (!bytes.ok()) return bytes.status();
+  const auto steps =
+      elements_of<Steps>("positions.quantized.uint16", quantized.uint16(), 4 * sizeof(uint16_t), message);
+  if (!steps.ok()) return steps.status();
   const auto lowest = position_from_proto(quantized.lowest(), "positions.quantized.lowest");
   if (!lowest.ok()) return lowest.status();
   const auto highest = position_from_proto(quantized.highest(), "positions.quantized.highest");
   if (!highest.ok()) return highest.status();
-  std::vector<Steps> steps(bytes->size() / sizeof(Steps));
-  std::memcpy(steps.data(), bytes->data(), bytes->size());
   std::vector<glm::vec3> positions;
-  positions.reserve(steps.size());
+  positions.reserve(steps->size());
   // In double, so that the ends are met.
   const glm::dvec3 first(*lowest), step = (glm::dvec3(*highest) - first) / 65535.0;
-  for (const Steps& s : steps) positions.emplace_back(first + glm::dvec3(s) * step);
+  for (const Steps& s : *steps) positions.emplace_back(first + glm::dvec3(s) * step);
   return positions;
 }
 

@@ -138,6 +138,20 @@ TEST_F(LiveClientTest, AFrameThatIsAskedForShowsWhatIsNewestThen) {
   EXPECT_EQ(control_->started(), 6);
 }
 
+TEST_F(LiveClientTest, AViewerThatTakesNothingCostsOneRevisionHoweverManyPass) {
+  FrameStream stream = scene_->stream(options());
+  ASSERT_TRUE(stream.next().ok());
+  Deformer deformer = scene_->deform();
+  ASSERT_TRUE(deformer.set_positions(body_, mesh_.positions).ok());
+  ASSERT_TRUE(deformer.flush().ok());
+  const uint64_t shape_bytes = mesh_.positions.size() * sizeof(Vec3);
+  const uint64_t before = server_->scenes().mesh_bytes();
+  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(deformer.set_positions(body_, mesh_.positions).ok());
+  ASSERT_TRUE(deformer.flush().ok());
+  // The scene's own shape, and those of at most three frames that are on their way to the viewer.
+  EXPECT_LE(server_->scenes().mesh_bytes(), before + 3 * shape_bytes);
+}
+
 TEST_F(LiveClientTest, MorphsByWeightsAndToTheSphere) {
   mesh_.morph_targets = {std::vector<Vec3>(mesh_.positions.size(), {0, 0, 2})};
   body_ = *scene_->add_mesh(mesh_, {.material = material_});

@@ -40,7 +40,8 @@ void add_stream_options(CLI::App& command, StreamArguments& arguments) {
   command.add_option("--picture-quality", arguments.quality, "Of jpg and webp, 1 to 100 (default: 80)")
       ->check(CLI::Range(1, 100));
   command.add_option("--bitrate", arguments.bits_per_second, "Of h264, bits a second (default: 4000000)");
-  command.add_flag("--every-revision", arguments.every_revision, "A frame of each edit, none passed over, after one of the scene at rest");
+  command.add_flag("--every-revision", arguments.every_revision,
+                   "A frame of each edit, none passed over, after one of the scene at rest");
   command.add_flag("--compress", arguments.compress, "Positions go compressed");
   add_scene_options(command, arguments.render);
 }

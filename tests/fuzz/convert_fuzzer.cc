@@ -142,17 +142,11 @@ void parse(std::string_view message, std::string_view bytes) {
 using Parse = void (*)(std::string_view message, std::string_view bytes);
 
 // The order is that of the seeds' first byte.
-constexpr Parse kRequests[] = {parse<v1::RenderFrameRequest>,
-                               parse<v1::CreateLightRequest>,
-                               parse<v1::UpdateLightRequest>,
-                               parse<v1::CreateMaterialRequest>,
-                               parse<v1::UpdateMaterialRequest>,
-                               parse<v1::CreateSceneRequest>,
-                               parse<v1::UpdateSceneRequest>,
-                               parse<v1::UpdateMeshRequest>,
-                               parse<v1::UploadMeshRequest>,
-                               parse<v1::UpdatePositionsRequest>,
-                               parse<v1::VertexPositions>};
+constexpr Parse kRequests[] = {
+    parse<v1::RenderFrameRequest>,     parse<v1::CreateLightRequest>,    parse<v1::UpdateLightRequest>,
+    parse<v1::CreateMaterialRequest>,  parse<v1::UpdateMaterialRequest>, parse<v1::CreateSceneRequest>,
+    parse<v1::UpdateSceneRequest>,     parse<v1::UpdateMeshRequest>,     parse<v1::UploadMeshRequest>,
+    parse<v1::UpdatePositionsRequest>, parse<v1::VertexPositions>};
 
 }  // namespace
 }  // namespace diaphane::fuzz

@@ -37,8 +37,8 @@ struct StreamView {
 
 struct StreamOptions {
   StreamView view;
-  /// Frames that may be on their way to here at once, 1..64: more hide the way's delay, but wait here for a program that
-  /// takes them slowly. 0: each is asked for by next(), and shows what is newest then.
+  /// Frames that may be on their way to here at once, 1..64: more hide the way's delay, but wait here for a program
+  /// that takes them slowly. 0: each is asked for by next(), and shows what is newest then.
   uint32_t frames_in_flight = 2;
   /// For recording: a frame of every revision, in order. next() fails with RESOURCE_EXHAUSTED when more than 64
   /// revisions wait, and with what broke the connection: nothing is left out in silence. Excludes rates in the view.

@@ -6,6 +6,7 @@
 // clang-format off
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
+#include "render/fresnel-inl.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
@@ -14,22 +15,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag = hn::ScalableTag<float>;
 using V = hn::Vec<Tag>;
-
-/// 1 − R, unpolarised, at a cosine of 0..1.
-HWY_INLINE V fresnel_transmittance(float refractive_index, V cosine) {
-  const Tag d;
-  const V one = hn::Set(d, 1.0f), eta = hn::Set(d, refractive_index);
-  const V sine2 = hn::NegMulAdd(cosine, cosine, one);
-  const V inside = hn::Sqrt(
-      hn::Max(hn::Zero(d), hn::NegMulAdd(sine2, hn::Set(d, 1.0f / (refractive_index * refractive_index)), one)));
-  const V bent = hn::Mul(eta, inside), steep = hn::Mul(eta, cosine);
-  // One quotient for both ratios. At an index of 1 and a grazing angle there is nothing below them.
-  const V below_s = hn::Add(cosine, bent), below_p = hn::Add(inside, steep);
-  const V inverse = hn::Div(one, hn::Max(hn::Mul(below_s, below_p), hn::Set(d, 1e-30f)));
-  const V s = hn::Mul(hn::Mul(hn::Sub(cosine, bent), below_p), inverse);
-  const V p = hn::Mul(hn::Mul(hn::Sub(inside, steep), below_s), inverse);
-  return hn::NegMulAdd(hn::Set(d, 0.5f), hn::MulAdd(s, s, hn::Mul(p, p)), one);
-}
 
 template <bool kDirectional, bool kSpot>
 void add_light(const LightStorage& light, float refractive_index, const SurfacePoints& points, size_t count,

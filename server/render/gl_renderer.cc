@@ -11,12 +11,12 @@
 namespace diaphane::render {
 namespace {
 
-const char* technique_path(Technique technique) {
+const char* technique_path(Technique technique, bool native) {
   switch (technique) {
     case Technique::kIntegral:
-      return "integral: native tree, forward";
+      return native ? "integral: native tree, native raster" : "integral: native tree, forward";
     case Technique::kPaper:
-      return "paper: six draws, full-screen taps";
+      return native ? "paper: native cube, native taps" : "paper: six draws, full-screen taps";
     case Technique::kReference:
       return "reference: native brute force";
     case Technique::kLambert:
@@ -28,14 +28,14 @@ const char* technique_path(Technique technique) {
 /// Thread: the one that made it, as FrameRenderer asks.
 class GlRenderer final : public FrameRenderer {
  public:
-  GlRenderer(std::unique_ptr<gl::Context> context, Shading shading)
-      : context_(std::move(context)), painter_(std::move(shading)) {}
+  GlRenderer(std::unique_ptr<gl::Context> context, Shading shading, bool native)
+      : context_(std::move(context)), painter_(std::move(shading), native) {}
 
   absl::StatusOr<Frame> render(const FrameRequest& request, const std::atomic<bool>& cancelled) override {
     absl::StatusOr<Frame> frame = painter_.paint(request, cancelled);
     if (absl::Status errors = context_->take_errors(); frame.ok() && !errors.ok()) return errors;
     if (frame.ok()) {
-      frame->path = fmt::format("{}; {}; {}", technique_path(request.settings.technique),
+      frame->path = fmt::format("{}; {}; {}", technique_path(request.settings.technique, painter_.was_native()),
                                 context_->info().software ? "software" : "gpu", diffusion::simd_level());
     }
     return frame;
@@ -93,11 +93,12 @@ absl::StatusOr<std::unique_ptr<FrameRenderer>> make_gl_renderer(const GlRenderer
   absl::StatusOr<std::unique_ptr<gl::Context>> context = gl::Context::create({options.device});
   if (!context.ok()) return context.status();
   const gl::ContextInfo& info = (*context)->info();
+  const bool native = options.raster == Raster::kAuto ? info.software : options.raster == Raster::kNative;
   spdlog::log(info.software ? spdlog::level::warn : spdlog::level::info, "renderer=\"{}\" version=\"{}\" {}: {}",
               info.renderer, info.version, info.software ? "SOFTWARE RENDERING" : "GPU", info.reason);
   absl::StatusOr<Shading> shading = Shading::load(gl::ShaderLibrary(options.shader_dir));
   if (!shading.ok()) return shading.status();
-  auto renderer = std::make_unique<GlRenderer>(*std::move(context), *std::move(shading));
+  auto renderer = std::make_unique<GlRenderer>(*std::move(context), *std::move(shading), native);
   if (options.warm_all) {
     if (absl::Status warm = warm_up(*renderer); !warm.ok()) return warm;
   }

@@ -5,6 +5,7 @@
 
 #include "render/cube_atlas.h"
 #include "render/gpu_mesh.h"
+#include "render/native_paper.h"
 #include "render/placed_mesh.h"
 #include "render/refined_mesh.h"
 #include "render/surface_light.h"
@@ -21,6 +22,7 @@ struct MeshState {
   VertexLight vertex_light;
   GpuMesh gpu;
   std::optional<CubeAtlas> atlas;
+  NativePaper native_paper;  ///< in place of `gpu` and `atlas` where the raster is native
 };
 
 /// A mesh of the frame that is being drawn.

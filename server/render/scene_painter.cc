@@ -23,6 +23,10 @@ bool is_textured(const std::vector<DrawnMesh>& meshes) {
   });
 }
 
+bool has_native_path(Technique technique) {
+  return technique == Technique::kPaper || technique == Technique::kIntegral;
+}
+
 }  // namespace
 
 absl::Status ScenePainter::check_cancelled(const Job& job) {
@@ -42,12 +46,17 @@ void ScenePainter::bind_view(const Job& job, size_t mesh_index) {
   glVertexAttrib2f(ATTRIBUTE_TEXTURE_COORDINATE, 0, 0);
 }
 
+/// Whether triangles that look away are hidden by others.
+bool ScenePainter::shows_outside_alone(const Job& job, size_t mesh_index) {
+  const DrawnMesh& drawn = job.meshes[mesh_index];
+  return drawn.mesh->topology->encloses_volume &&
+         !contains(drawn.state->placed.bounds_mm(), glm::vec3(job.view.eye_mm));
+}
+
 void ScenePainter::draw_meshes(const Job& job) {
   for (size_t i = 0; i < job.meshes.size(); ++i) {
     bind_view(job, i);
-    const MeshState& state = *job.meshes[i].state;
-    const bool from_outside = !contains(state.placed.bounds_mm(), glm::vec3(job.view.eye_mm));
-    state.gpu.draw(from_outside && job.meshes[i].mesh->topology->encloses_volume);
+    job.meshes[i].state->gpu.draw(shows_outside_alone(job, i));
   }
 }
 
@@ -133,6 +142,8 @@ absl::Status ScenePainter::draw_tile(Job& job, const Tile& tile, uint8_t* pixels
   const Technique technique = job.request.settings.technique;
   if (technique == Technique::kReference) {
     if (absl::Status status = draw_reference_tile(job, tile, pixels); !status.ok()) return status;
+  } else if (job.native) {
+    draw_native_tile(job, tile, pixels);
   } else {
     if (technique == Technique::kIntegral) {
       draw_forward(job, tile);
@@ -165,6 +176,8 @@ absl::StatusOr<Frame> ScenePainter::paint(const FrameRequest& request, const std
   job.variant.channels = job.needs.light;
   gather_meshes(job);
   job.variant.textured = is_textured(job.meshes);
+  job.native = native_ && !job.variant.textured && has_native_path(technique);
+  was_native_ = job.native;
   if (absl::Status updated = update(job); !updated.ok()) return updated;
 
   const float aspect = static_cast<float>(request.width_px) / static_cast<float>(request.height_px);

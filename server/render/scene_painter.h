@@ -13,8 +13,10 @@
 #include "render/frame.h"
 #include "render/gpu_textures.h"
 #include "render/mesh_state.h"
+#include "render/native_view.h"
 #include "render/shading.h"
 #include "render/shadow.h"
+#include "render/srgb_table.h"
 #include "render/tiles.h"
 #include "render/view_targets.h"
 
@@ -23,10 +25,13 @@ namespace diaphane::render {
 /// Keeps meshes, atlases and targets from frame to frame. Render thread only, with the context current.
 class ScenePainter {
  public:
-  explicit ScenePainter(Shading shading) : shading_(std::move(shading)) {}
+  /// `native`: what triangles show is found on the CPU, for techniques that have it.
+  ScenePainter(Shading shading, bool native) : shading_(std::move(shading)), native_(native) {}
 
   /// Errors: as FrameRenderer::render.
   absl::StatusOr<Frame> paint(const FrameRequest& request, const std::atomic<bool>& cancelled);
+  /// Whether the last frame's triangles went without OpenGL.
+  bool was_native() const { return was_native_; }
 
  private:
   /// What one frame's stages share.
@@ -36,6 +41,7 @@ class ScenePainter {
     ChannelNeeds needs;  ///< of the pass at hand
     PixelFormat format;  ///< that is drawn
     bool coated = false;
+    bool native = false;
     Variant variant{};
     std::vector<DrawnMesh> meshes{};
     geometry::Bounds bounds_mm{};
@@ -56,6 +62,7 @@ class ScenePainter {
   void bound_memory(const Job& job);
   absl::Status refine(Job& job);
   void update_shadows(Job& job);
+  static AtlasKey atlas_key(const DrawnMesh& drawn, const Job& job);
   void update_atlas(const DrawnMesh& drawn, Job& job);
   void update_integral(const DrawnMesh& drawn, bool shadowed, Job& job);
   absl::Status update_lit(const DrawnMesh& drawn, bool shadowed, Job& job);
@@ -64,6 +71,7 @@ class ScenePainter {
 
   // scene_painter.cc
   void bind_view(const Job& job, size_t mesh_index);
+  static bool shows_outside_alone(const Job& job, size_t mesh_index);
   void draw_meshes(const Job& job);
   void set_viewport(const Job& job, const Tile& tile) const;
   void draw_gbuffer(Job& job, const Tile& tile);
@@ -72,6 +80,15 @@ class ScenePainter {
   void read_surface(Job& job, const Tile& tile);
   void read_tile(Job& job, const Tile& tile, uint8_t* pixels);
   absl::Status draw_tile(Job& job, const Tile& tile, uint8_t* pixels);
+
+  // scene_painter_native.cc
+  RasterMesh raster_mesh(const Job& job, size_t mesh_index) const;
+  void update_native_atlas(const DrawnMesh& drawn, Job& job);
+  void shade_batch(const Job& job, size_t mesh_index, const PointBatch& points, EnteringLight& radiosity) const;
+  void store_batch(Job& job, size_t mesh_index, const PointBatch& points, const EnteringLight& radiosity,
+                   uint8_t* pixels) const;
+  void store_irradiance(Job& job);
+  void draw_native_tile(Job& job, const Tile& tile, uint8_t* pixels);
 
   // scene_painter_samples.cc
   void shift_view(Job& job, const glm::vec2& place) const;
@@ -86,6 +103,11 @@ class ScenePainter {
   void add_coats(Job& job, std::span<glm::vec4> radiance);
 
   Shading shading_;
+  bool native_;
+  bool was_native_ = false;
+  NativeView view_;
+  std::vector<RasterMesh> raster_meshes_;
+  SrgbTable srgb_;
   CoatLayer coats_;
   GpuTextures textures_;
   std::map<std::string, MeshState> meshes_;

@@ -77,7 +77,8 @@ absl::Status ScenePainter::refine(Job& job) {
 
 void ScenePainter::bound_memory(const Job& job) {
   const auto bytes_of = [](const MeshState& state) {
-    return state.light.bytes() + state.vertex_light.bytes() + (state.atlas.has_value() ? state.atlas->bytes() : 0);
+    return state.light.bytes() + state.vertex_light.bytes() + state.native_paper.cube.bytes() +
+           (state.atlas.has_value() ? state.atlas->bytes() : 0);
   };
   size_t bytes = 0;
   for (const auto& [name, state] : meshes_) bytes += bytes_of(state);
@@ -103,10 +104,14 @@ void ScenePainter::update_surface(const DrawnMesh& drawn, const RefinedMesh* ref
       job.clock);
 }
 
+AtlasKey ScenePainter::atlas_key(const DrawnMesh& drawn, const Job& job) {
+  return {drawn.state->placed.generation(), job.lights, drawn.material.refractive_index,
+          job.request.settings.paper.face_size_px, job.variant.lit ? drawn.state->vertex_light.generation() : 0};
+}
+
 void ScenePainter::update_atlas(const DrawnMesh& drawn, Job& job) {
   const uint32_t face_size_px = job.request.settings.paper.face_size_px;
-  AtlasKey key{drawn.state->placed.generation(), job.lights, drawn.material.refractive_index, face_size_px,
-               job.variant.lit ? drawn.state->vertex_light.generation() : 0};
+  AtlasKey key = atlas_key(drawn, job);
   if (drawn.state->atlas.has_value() && drawn.state->atlas->key() == key) {
     job.clock.sleep("atlas");
     return;
@@ -131,6 +136,7 @@ void ScenePainter::update_integral(const DrawnMesh& drawn, bool shadowed, Job& j
                       shadowed ? &shadows_ : nullptr, job.ambient.occluded ? &shadows_ : nullptr,
                       shadowed || job.ambient.occluded ? shadows_generation_ : 0, job.request.settings.slab_correction},
                      job.clock);
+  if (job.native) return;
   state.gpu.update(refined.topology(), refined.shape(), refined.generation(), job.clock);
   update_surface(drawn, &refined, job);
   state.gpu.update_radiosity(state.light.radiosity(), state.light.generation(), job.clock);
@@ -153,6 +159,7 @@ absl::Status ScenePainter::update_lit(const DrawnMesh& drawn, bool shadowed, Job
        shadowed ? &shadows_ : nullptr, job.ambient.occluded ? &shadows_ : nullptr,
        shadowed || job.ambient.occluded ? shadows_generation_ : 0},
       job.clock);
+  if (job.native) return absl::OkStatus();
   state.gpu.update(state.lit.topology(), state.lit.shape(), state.lit.generation(), job.clock);
   update_surface(drawn, &state.lit, job);
   state.gpu.update_irradiance(state.vertex_light.irradiance(), &state.vertex_light, state.vertex_light.generation(),
@@ -170,10 +177,13 @@ absl::Status ScenePainter::update_mesh(const DrawnMesh& drawn, bool shadowed, Jo
     if (absl::Status status = update_lit(drawn, shadowed, job); !status.ok()) return status;
   } else {
     state.placed.complete_normals(job.clock);
-    state.gpu.update(drawn.mesh->topology, state.placed.shape(), state.placed.generation(), job.clock);
-    update_surface(drawn, nullptr, job);
+    if (!job.native) {
+      state.gpu.update(drawn.mesh->topology, state.placed.shape(), state.placed.generation(), job.clock);
+      update_surface(drawn, nullptr, job);
+    }
   }
-  if (job.request.settings.technique == Technique::kPaper) update_atlas(drawn, job);
+  if (job.request.settings.technique != Technique::kPaper) return absl::OkStatus();
+  job.native ? update_native_atlas(drawn, job) : update_atlas(drawn, job);
   return absl::OkStatus();
 }
 

@@ -8,6 +8,7 @@
 #include "glm/gtc/matrix_transform.hpp"
 #include "render/gl_renderer.h"
 #include "tests/gl/render/scenes.h"
+#include "tests/gl/render/shared_renderer.h"
 
 namespace diaphane::render {
 namespace {
@@ -15,18 +16,8 @@ namespace {
 const std::atomic<bool> kNotCancelled = false;
 constexpr float kPi = std::numbers::pi_v<float>;
 
-class Paper : public ::testing::Test {
+class Paper : public BothRasters {
  protected:
-  static void SetUpTestSuite() {
-    auto made = make_gl_renderer({.warm_all = false});
-    ASSERT_TRUE(made.ok()) << made.status();
-    renderer_ = std::move(*made).release();
-  }
-  static void TearDownTestSuite() {
-    delete renderer_;
-    renderer_ = nullptr;
-  }
-
   /// Linear RGBA, rows top to bottom.
   static std::vector<glm::vec4> radiance(FrameRequest request) {
     request.format = PixelFormat::kLinearFloat;
@@ -40,9 +31,8 @@ class Paper : public ::testing::Test {
     }
     return pixels;
   }
-
-  static inline FrameRenderer* renderer_ = nullptr;
 };
+INSTANTIATE_TEST_SUITE_P(, Paper, kBothRasters, name_of_raster);
 
 constexpr uint32_t kSize_px = 64;
 
@@ -129,19 +119,19 @@ void expect_local_sum_of_taps(const std::vector<glm::vec4>& pixels, const PlaneS
   }
 }
 
-TEST_F(Paper, LocalTermIsTheSumOfItsTapsOnAPlane) {
+TEST_P(Paper, LocalTermIsTheSumOfItsTapsOnAPlane) {
   for (const int taps : {3, 4, 5, 6}) {
     const PlaneScene plane;
     expect_local_sum_of_taps(radiance(plane.request(256, static_cast<uint32_t>(taps))), plane, taps);
   }
 }
 
-TEST_F(Paper, LocalTermIsTheSumOfItsTapsOnATiltedPlane) {
+TEST_P(Paper, LocalTermIsTheSumOfItsTapsOnATiltedPlane) {
   const PlaneScene plane = tilted_plane();
   expect_local_sum_of_taps(radiance(plane.request(256, 5)), plane, 5);
 }
 
-TEST_F(Paper, BrightnessDoesNotFollowTheFaceSize) {
+TEST_P(Paper, BrightnessDoesNotFollowTheFaceSize) {
   for (const PlaneScene& plane : {PlaneScene{}, tilted_plane()}) {
     const auto coarse = radiance(plane.request(128, 5));
     const auto fine = radiance(plane.request(512, 5));
@@ -173,7 +163,7 @@ glm::vec3 mean_behind_slab(const std::function<std::vector<glm::vec4>(FrameReque
   return sum / static_cast<float>(pixels.size());
 }
 
-TEST_F(Paper, GlobalTermFallsWithTheThicknessOfASlab) {
+TEST_P(Paper, GlobalTermFallsWithTheThicknessOfASlab) {
   float last = INFINITY;
   for (const float thickness : {1.0f, 2.0f, 4.0f}) {
     const float mean = mean_behind_slab(radiance, thickness, Technique::kPaper, Terms::kGlobal).x;
@@ -183,13 +173,13 @@ TEST_F(Paper, GlobalTermFallsWithTheThicknessOfASlab) {
   }
 }
 
-TEST_F(Paper, LambertIsBlackBehindASlab) {
+TEST_P(Paper, LambertIsBlackBehindASlab) {
   for (const float thickness : {1.0f, 2.0f, 4.0f}) {
     EXPECT_EQ(mean_behind_slab(radiance, thickness, Technique::kLambert, Terms::kBoth), glm::vec3(0)) << thickness;
   }
 }
 
-TEST_F(Paper, BothTermsAreTheSumOfEach) {
+TEST_P(Paper, BothTermsAreTheSumOfEach) {
   FrameRequest request = PlaneScene{}.request(128, 5);
   const auto local = radiance(request);
   request.settings.paper.terms = Terms::kGlobal;
@@ -202,7 +192,7 @@ TEST_F(Paper, BothTermsAreTheSumOfEach) {
   }
 }
 
-TEST_F(Paper, GlobalGainScalesTheGlobalTerm) {
+TEST_P(Paper, GlobalGainScalesTheGlobalTerm) {
   FrameRequest request = PlaneScene{}.request(128, 5);
   request.settings.paper.terms = Terms::kGlobal;
   const auto one = radiance(request);

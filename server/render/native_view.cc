@@ -2,16 +2,18 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "glm/vec4.hpp"
+#include "render/raster_candidates.h"
 #include "tbb/blocked_range.h"
 #include "tbb/parallel_for.h"
 
 namespace diaphane::render {
 namespace {
 
-constexpr size_t kChunk = 4096;
+constexpr size_t kChunk = 2048;
 constexpr uint32_t kRowsAtOnce = 8;
 // Corners beyond so many half pictures are clipped, so that their places and the products of sides stay whole numbers.
 constexpr float kGuard = 8;
@@ -69,13 +71,19 @@ NativeView::Corner NativeView::place(const glm::vec4& clip) const {
   return {{raster(clip.x, picture_.width_px, tile_.x_px), raster(clip.y, picture_.height_px, tile_.y_px)}, inverse};
 }
 
-void NativeView::place_vertices(const RasterMesh& mesh, Corner* corners) const {
+void NativeView::place_vertices(const RasterMesh& mesh) {
+  std::atomic<bool> clips = false;
   tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.positions_mm.size(), kChunk), [&](const auto& range) {
+    bool all_safe = true;
     for (size_t v = range.begin(); v != range.end(); ++v) {
       const glm::vec4 clip = picture_.clip_from_world * glm::vec4(mesh.positions_mm[v], 1);
-      corners[v] = is_safe(clip) ? place(clip) : Corner{{0, 0}, -1};
+      const bool safe = is_safe(clip);
+      all_safe &= safe;
+      corners_[v] = safe ? place(clip) : Corner{{0, 0}, -1};
     }
+    if (!all_safe) clips.store(true, std::memory_order_relaxed);
   });
+  clips_ = clips.load();
 }
 
 void NativeView::see_triangle(const RasterMesh& mesh, const Corner& a, const Corner& b, const Corner& c,
@@ -105,17 +113,27 @@ void NativeView::see_clipped(const RasterMesh& mesh, const glm::uvec3& triangle,
   }
 }
 
-void NativeView::see(const RasterMesh& mesh, const Corner* corners, uint32_t first_triangle, size_t begin, size_t end) {
-  for (size_t t = begin; t != end; ++t) {
+void NativeView::see(const RasterMesh& mesh, uint32_t first_triangle, size_t begin, size_t end) {
+  const auto index_of = [&](size_t t) { return first_triangle + static_cast<uint32_t>(t); };
+  const auto see_whole = [&](size_t t) {
     const glm::uvec3& triangle = mesh.triangles[t];
-    const Corner &a = corners[triangle.x], &b = corners[triangle.y], &c = corners[triangle.z];
-    const uint32_t index = first_triangle + static_cast<uint32_t>(t);
-    if (std::min({a.nearness, b.nearness, c.nearness}) < 0) {
-      see_clipped(mesh, triangle, index);
-    } else {
-      see_triangle(mesh, a, b, c, index);
+    see_triangle(mesh, corners_[triangle.x], corners_[triangle.y], corners_[triangle.z], index_of(t));
+  };
+  if (clips_) {
+    for (size_t t = begin; t != end; ++t) {
+      const glm::uvec3& i = mesh.triangles[t];
+      const float least = std::min({corners_[i.x].nearness, corners_[i.y].nearness, corners_[i.z].nearness});
+      least < 0 ? see_clipped(mesh, i, index_of(t)) : see_whole(t);
     }
+    return;
   }
+  uint32_t candidates[kChunk + 16];
+  const Turn turn = !mesh.facing_only ? Turn::kEither : mesh.flipped ? Turn::kClockwise : Turn::kCounterClockwise;
+  const size_t count = find_candidates(mesh.triangles, begin, end,
+                                       {&corners_[0].at.x, &corners_[0].at.y, static_cast<int32_t>(tile_.width_px),
+                                        static_cast<int32_t>(tile_.height_px)},
+                                       turn, candidates);
+  for (size_t i = 0; i < count; ++i) see_whole(candidates[i]);
 }
 
 void NativeView::draw(const Picture& picture, const Tile& tile, std::span<const RasterMesh> meshes) {
@@ -130,9 +148,11 @@ void NativeView::draw(const Picture& picture, const Tile& tile, std::span<const 
   corners_.resize(most_vertices);
   seen_.assign(size_t{tile.width_px} * tile.height_px, 0);
   for (size_t m = 0; m < meshes.size(); ++m) {
-    place_vertices(meshes[m], corners_.data());
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, meshes[m].triangles.size(), kChunk), [&](const auto& range) {
-      see(meshes[m], corners_.data(), first_triangles_[m], range.begin(), range.end());
+    place_vertices(meshes[m]);
+    const size_t triangles = meshes[m].triangles.size();
+    tbb::parallel_for(size_t{0}, (triangles + kChunk - 1) / kChunk, [&](size_t chunk) {
+      const size_t begin = chunk * kChunk;
+      see(meshes[m], first_triangles_[m], begin, std::min(begin + kChunk, triangles));
     });
   }
 }

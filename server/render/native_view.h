@@ -40,8 +40,8 @@ class NativeView {
   };
 
   Corner place(const glm::vec4& clip) const;
-  void place_vertices(const RasterMesh& mesh, Corner* corners) const;
-  void see(const RasterMesh& mesh, const Corner* corners, uint32_t first_triangle, size_t begin, size_t end);
+  void place_vertices(const RasterMesh& mesh);
+  void see(const RasterMesh& mesh, uint32_t first_triangle, size_t begin, size_t end);
   void see_triangle(const RasterMesh& mesh, const Corner& a, const Corner& b, const Corner& c, uint32_t index);
   void see_clipped(const RasterMesh& mesh, const glm::uvec3& triangle, uint32_t index);
   size_t mesh_of(uint32_t triangle) const;
@@ -49,8 +49,9 @@ class NativeView {
   Picture picture_{};
   Tile tile_{};
   std::vector<uint32_t> first_triangles_;  ///< of each mesh, and the end
-  std::vector<Corner> corners_;
-  std::vector<uint64_t> seen_;  ///< visible_key()s, [row][column]
+  std::vector<Corner> corners_;            ///< of one mesh
+  bool clips_ = false;                     ///< some of them have triangles to clip
+  std::vector<uint64_t> seen_;             ///< visible_key()s, [row][column]
 };
 
 }  // namespace diaphane::render

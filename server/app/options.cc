@@ -38,7 +38,7 @@ void add_limits(CLI::App& app, service::ServiceLimits& limits, uint64_t& mesh_mi
 
 std::variant<Options, int> parse_options(int argc, char** argv) {
   Options options;
-  std::string warm = "all";
+  std::string warm = "all", raster = "auto";
   uint64_t mesh_mib = options.server.limits.scene.max_mesh_bytes >> 20;
   uint64_t grpc_mib = options.server.grpc_memory_bytes >> 20;
   double upload_silence_s = absl::ToDoubleSeconds(options.server.limits.max_upload_silence);
@@ -53,6 +53,10 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
   app.add_flag("--allow-public-plaintext", options.server.allow_public_plaintext,
                "listen, unencrypted, where other machines can connect");
   app.add_option("--device", options.renderer.device, "GPU, by its index or a part of its name (default: the best)");
+  app.add_option("--raster", raster,
+                 "who finds what triangles show: OpenGL, the CPU, or the CPU where OpenGL is software")
+      ->check(CLI::IsMember({"auto", "gl", "native"}))
+      ->capture_default_str();
   app.add_option("--shader-dir", options.renderer.shader_dir, "read shaders from here, not from the program")
       ->check(CLI::ExistingDirectory);
   app.add_option("--warm", warm, "draw once with every program before listening, or none")
@@ -77,6 +81,9 @@ std::variant<Options, int> parse_options(int argc, char** argv) {
     return app.exit(stop) == 0 ? 0 : kUsageError;
   }
   options.renderer.warm_all = warm == "all";
+  options.renderer.raster = raster == "gl"       ? render::Raster::kGl
+                            : raster == "native" ? render::Raster::kNative
+                                                 : render::Raster::kAuto;
   options.server.limits.scene.max_mesh_bytes = mesh_mib << 20;
   options.server.limits.max_upload_silence = absl::Seconds(upload_silence_s);
   options.server.limits.max_reference_time = absl::Seconds(reference_s);

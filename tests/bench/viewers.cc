@@ -145,7 +145,8 @@ class Audience {
     Round& round = rounds_[frame.frame.scene_revision];
     double each = 0;
     for (const StageTime& time : frame.frame.stages) {
-      const bool own = time.stage == "draw" || time.stage == "read_back" || time.stage == "encode";
+      const bool own = time.stage == "draw" || time.stage == "raster" || time.stage == "shade" ||
+                       time.stage == "read_back" || time.stage == "encode";
       if (own) each += time.milliseconds;
       if (!own && time.stage != "queue") round.update_ms += time.milliseconds;
       if (time.stage == "gather" && time.ran) ++round.updates;

@@ -9,7 +9,7 @@ import grpc
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .deformer import Deformer, float32_rows
+from .deformer import Deformer, float32_rows, uint32_indices
 from .errors import told_as_one
 from .frames import Frame, FrameStream, frame_of
 from .v1 import (
@@ -39,6 +39,14 @@ Triple = Sequence[float]
 def _vec3(values: Triple) -> common_pb2.Vec3:
     x, y, z = values
     return common_pb2.Vec3(x=x, y=y, z=z)
+
+
+def _one_per_vertex(values: ArrayLike, vertices: int, name: str) -> np.ndarray:
+    # The server sees the sum of all lengths alone: what one array lacks, another may make up for.
+    rows = float32_rows(values, 3, name)
+    if len(rows) != vertices:
+        raise ValueError(f"{name}: must have one row per position ({vertices}), got {len(rows)}")
+    return rows
 
 
 def _encoding(image_format: str, quality: int = 0) -> frame_pb2.Encoding:
@@ -146,14 +154,14 @@ class Scene:
         [n, 3] where they are not to be computed; of each morph target the displacements [n, 3]. Its resource name.
         """
         rows = float32_rows(positions, 3, "positions")
-        corners = np.ascontiguousarray(triangles, dtype="<u4")
+        corners = uint32_indices(triangles, "triangles")
         if corners.ndim != 2 or corners.shape[1] != 3:
             raise ValueError(f"triangles: must have the shape [m, 3], got {list(corners.shape)}")
         parts = [rows]
         if normals is not None:
-            parts.append(float32_rows(normals, 3, "normals"))
+            parts.append(_one_per_vertex(normals, len(rows), "normals"))
         parts.append(corners)
-        parts += [float32_rows(target, 3, "morph_targets") for target in morph_targets]
+        parts += [_one_per_vertex(target, len(rows), "morph_targets") for target in morph_targets]
         payload = b"".join(part.tobytes() for part in parts)
         header = scene_service_pb2.MeshHeader(
             parent=self.name,

@@ -23,6 +23,16 @@ def float32_rows(values: ArrayLike, width: int, name: str) -> np.ndarray:
     return rows
 
 
+def uint32_indices(values: ArrayLike, name: str) -> np.ndarray:
+    """`values` as little-endian uint32; ValueError names what a conversion would silently change."""
+    indices = np.asarray(values)
+    if indices.size and indices.dtype.kind not in "iu":
+        raise ValueError(f"{name}: must be integers, got {indices.dtype}")
+    if indices.size and not 0 <= (lowest := int(indices.min())) <= (highest := int(indices.max())) < 1 << 32:
+        raise ValueError(f"{name}: must be within 0..2^32-1, got {lowest if lowest < 0 else highest}")
+    return np.ascontiguousarray(indices, dtype="<u4")
+
+
 class Deformer:
     """Sends edits without waiting for each; at most 32 are on their way. What is not known to be applied when a
     connection breaks is sent again, in order. One thread at a time.
@@ -47,7 +57,7 @@ class Deformer:
         change.positions.mesh = mesh
         change.positions.float32 = float32_rows(positions, 3, "positions").tobytes()
         if indices is not None:
-            change.positions.indices.extend(np.asarray(indices, dtype=np.uint32).tolist())
+            change.positions.indices.extend(uint32_indices(indices, "indices").tolist())
         self.send([change])
 
     def set_weights(self, mesh: str, weights: ArrayLike) -> None:

@@ -1,10 +1,13 @@
 """The Python client against a real server."""
 
+import contextlib
 import os
 import pathlib
+import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 
 import numpy as np
@@ -85,6 +88,25 @@ class ClientTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "image_format"):
             self.scene.render(CAMERA, SIZE, "bmp")
 
+    def test_refuses_indices_that_a_conversion_would_change(self) -> None:
+        wrapping = self.triangles.astype(np.int64)
+        wrapping[0, 0] += 1 << 32
+        with self.assertRaisesRegex(ValueError, r"triangles: must be within 0\.\.2\^32-1, got 429496"):
+            self.scene.add_mesh(self.positions, wrapping, self.material)
+        with self.assertRaisesRegex(ValueError, "triangles: must be integers, got float64"):
+            self.scene.add_mesh(self.positions, self.triangles + 0.7, self.material)
+        with self.scene.deform() as deformer:
+            for indices in ([0.7], [1 << 32], [-1]):
+                with self.assertRaisesRegex(ValueError, "indices: must be"):
+                    deformer.set_positions(self.body, [(0, 3, 0)], indices=indices)
+
+    def test_refuses_normals_that_another_array_makes_up_for(self) -> None:
+        longer = np.zeros((len(self.positions) + 1, 3))
+        with self.assertRaisesRegex(ValueError, "normals: must have one row per position"):
+            self.scene.add_mesh(self.positions, self.triangles, self.material, self.positions[:-1], [longer])
+        with self.assertRaisesRegex(ValueError, "morph_targets: must have one row per position"):
+            self.scene.add_mesh(self.positions, self.triangles, self.material, None, [longer])
+
     def test_edits_are_shown_by_the_next_frame(self) -> None:
         before = self.scene.render(CAMERA, SIZE, settings=LAMBERT)
         with self.scene.deform() as deformer:
@@ -131,6 +153,75 @@ class ClientTest(unittest.TestCase):
             images = [path.read_bytes() for path in sorted(pathlib.Path(folder).glob("pose_*.jpg"))]
         self.assertEqual(len(images), 6)
         self.assertEqual(len(set(images)), 6)
+
+
+class Relay:
+    """Passes bytes on to a server, until it cuts every connection."""
+
+    def __init__(self, address: str):
+        host, port = address.rsplit(":", 1)
+        self._server = (host, int(port))
+        self._sockets: list[socket.socket] = []
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self.address = f"127.0.0.1:{self._listener.getsockname()[1]}"
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    def cut(self) -> None:
+        for end in self._sockets:
+            with contextlib.suppress(OSError):
+                end.shutdown(socket.SHUT_RDWR)
+            end.close()
+        self._sockets = []
+
+    def stop(self) -> None:
+        self._listener.shutdown(socket.SHUT_RDWR)
+        self._listener.close()
+        self.cut()
+
+    def _accept(self) -> None:
+        with contextlib.suppress(OSError):
+            while True:
+                near, _ = self._listener.accept()
+                far = socket.create_connection(self._server)
+                self._sockets += [near, far]
+                for source, sink in ((near, far), (far, near)):
+                    threading.Thread(target=self._pass_on, args=(source, sink), daemon=True).start()
+
+    @staticmethod
+    def _pass_on(source: socket.socket, sink: socket.socket) -> None:
+        with contextlib.suppress(OSError):
+            while data := source.recv(1 << 16):
+                sink.sendall(data)
+
+
+class ReplayTest(unittest.TestCase):
+    def test_sparse_edits_over_cut_connections_end_where_the_client_is(self) -> None:
+        server = Server()
+        self.addCleanup(server.stop)
+        relay = Relay(server.address)
+        self.addCleanup(relay.stop)
+        with diaphane.connect(server.address) as direct, diaphane.connect(relay.address, 20) as through:
+            positions, triangles = deform.ball(8, 12)
+            positions = positions.astype(np.float32)
+
+            def scene_of(rows: np.ndarray) -> tuple[diaphane.Scene, str]:
+                scene = direct.create_scene(millimetres_per_unit=10)
+                scene.add_point_light((0, 2, 6), (900, 900, 900))
+                return scene, scene.add_mesh(rows, triangles, scene.add_material("marble"))
+
+            scene, body = scene_of(positions)
+            before = scene.render(CAMERA, SIZE, settings=LAMBERT).image
+            random = np.random.default_rng(1)
+            with diaphane.Scene(through, scene.name).deform() as deformer:
+                for i in range(300):
+                    moved = random.choice(len(positions), 5, replace=False)
+                    positions[moved] *= 1 + 0.05 * random.random((5, 1), dtype=np.float32)
+                    deformer.set_positions(body, positions[moved], indices=moved)
+                    if i % 50 == 49:
+                        relay.cut()
+            after = scene.render(CAMERA, SIZE, settings=LAMBERT).image
+            self.assertNotEqual(after, before)
+            self.assertEqual(after, scene_of(positions)[0].render(CAMERA, SIZE, settings=LAMBERT).image)
 
 
 class ReconnectTest(unittest.TestCase):

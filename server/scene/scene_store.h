@@ -186,8 +186,11 @@ class SceneStore {
   /// FAILED_PRECONDITION while a material uses it.
   absl::StatusOr<uint64_t> delete_texture(const Reference& texture);
 
+  /// Takes memory for what is on its way to be applied, given back by the caller.
+  absl::StatusOr<Reservation> reserve(uint64_t bytes) { return budget_.reserve(bytes); }
   /// Applies all changes as one revision, or none: the error of the first that cannot be, its field with "changes[i]."
-  /// before it. Returns the new revision.
+  /// before it; INVALID_ARGUMENT where results are not within ±1e18. What a later change of an edit replaces whole is
+  /// not worked out. Returns the new revision.
   absl::StatusOr<uint64_t> apply(const Reference& scene, std::vector<SceneChange> changes);
 
   /// Told of a scene's every revision, in order, and at last nothing, when the scene is deleted. Called with the

@@ -69,6 +69,8 @@ absl::Status EditStream::apply(const v1::SceneEdit& edit) {
     return base::invalid_field("edit.sequence", fmt::format("{}, after {}", *sequence_ + 1, *sequence_),
                                fmt::format("{}", edit.sequence()));
   }
+  const absl::StatusOr<scene::Reservation> decoding = store_.reserve(decoded_bytes(edit));
+  if (!decoding.ok()) return decoding.status();
   auto changes = from_proto(edit);
   if (!changes.ok()) return changes.status();
   const absl::StatusOr<uint64_t> revision = store_.apply({"scene", scene_}, *std::move(changes));

@@ -8,6 +8,7 @@
 #include "diaphane/v1/scene_service.pb.h"
 #include "geometry/topology.h"
 #include "glm/matrix.hpp"
+#include "service/convert/edit.h"
 #include "service/convert/frame.h"
 #include "service/convert/light.h"
 #include "service/convert/material.h"
@@ -125,12 +126,33 @@ void convert(const v1::UpdatePositionsRequest& request, std::string_view bytes) 
   if (is_accepted(spec)) take_payload(*spec, bytes);
 }
 
+void check_positions(const scene::PositionsPatch& patch) {
+  require(!patch.positions.empty(), "a position");
+  require(patch.indices.empty() || patch.indices.size() == patch.positions.size(), "a position an index");
+  for (const glm::vec3& position : patch.positions) require(is_finite(position), "finite positions");
+}
+
 void convert(const v1::VertexPositions& request, std::string_view) {
   const auto patch = service::from_proto(request);
   if (!is_accepted(patch)) return;
-  require(!patch->positions.empty(), "a position");
-  require(patch->indices.empty() || patch->indices.size() == patch->positions.size(), "a position an index");
-  for (const glm::vec3& position : patch->positions) require(is_finite(position), "finite positions");
+  check_positions(*patch);
+  if (request.meshopt_count() == 0) return;
+  require(patch->positions.size() * sizeof(glm::vec3) <= service::decoded_bytes(request), "the memory that was told");
+}
+
+void convert(const v1::SceneEdit& request, std::string_view) {
+  const auto changes = service::from_proto(request);
+  if (!is_accepted(changes)) return;
+  require(!changes->empty() && changes->size() == static_cast<size_t>(request.changes_size()), "every change");
+  for (const scene::SceneChange& change : *changes) {
+    if (const auto* positions = std::get_if<scene::PositionsPatch>(&change.patch)) check_positions(*positions);
+    if (const auto* sphere = std::get_if<scene::SpherePatch>(&change.patch)) {
+      require(sphere->amount >= 0 && sphere->amount <= 1, "an amount of 0..1");
+    }
+    if (const auto* weights = std::get_if<scene::WeightsPatch>(&change.patch)) {
+      for (const float weight : weights->weights) require(std::abs(weight) <= 1e6f, "weights within ±1e6");
+    }
+  }
 }
 
 template <typename Request>
@@ -146,7 +168,7 @@ constexpr Parse kRequests[] = {
     parse<v1::RenderFrameRequest>,     parse<v1::CreateLightRequest>,    parse<v1::UpdateLightRequest>,
     parse<v1::CreateMaterialRequest>,  parse<v1::UpdateMaterialRequest>, parse<v1::CreateSceneRequest>,
     parse<v1::UpdateSceneRequest>,     parse<v1::UpdateMeshRequest>,     parse<v1::UploadMeshRequest>,
-    parse<v1::UpdatePositionsRequest>, parse<v1::VertexPositions>};
+    parse<v1::UpdatePositionsRequest>, parse<v1::VertexPositions>,       parse<v1::SceneEdit>};
 
 }  // namespace
 }  // namespace diaphane::fuzz

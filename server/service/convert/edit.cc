@@ -78,4 +78,10 @@ absl::StatusOr<std::vector<scene::SceneChange>> from_proto(const v1::SceneEdit& 
   return changes;
 }
 
+uint64_t decoded_bytes(const v1::SceneEdit& message) {
+  uint64_t bytes = 0;
+  for (const v1::SceneChange& change : message.changes()) bytes += decoded_bytes(change.positions());
+  return bytes;
+}
+
 }  // namespace diaphane::service

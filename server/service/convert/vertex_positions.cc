@@ -13,74 +13,90 @@ namespace diaphane::service {
 namespace {
 
 using Steps = glm::vec<3, uint16_t>;
-static_assert(sizeof(glm::vec3) == 12 && sizeof(Steps) == 6);
+// As the codec has them: its elements are of four bytes or a multiple.
+using PaddedSteps = glm::vec<4, uint16_t>;
+static_assert(sizeof(glm::vec3) == 12 && sizeof(Steps) == 6 && sizeof(PaddedSteps) == 8);
 
 // The codec gives each sixteen bytes of a kind two bits at least.
 constexpr uint64_t kMostExpansion = 64;
 
-/// The elements of `bytes`, as they are or out of the codec, where each takes `stride` bytes.
-template <typename T>
-absl::StatusOr<std::vector<T>> elements_of(std::string_view field, const std::string& bytes, size_t stride,
+uint64_t most_elements(size_t coded_bytes, size_t each) { return kMostExpansion * coded_bytes / each; }
+
+/// The elements of `bytes` as they are.
+template <typename Element>
+absl::StatusOr<std::vector<Element>> plain(std::string_view field, std::string_view bytes,
                                            const v1::VertexPositions& message) {
-  const auto indices = static_cast<uint64_t>(message.indices_size());
-  const uint64_t coded = message.meshopt_count();
-  if (coded == 0) {
-    if (bytes.empty() || bytes.size() % sizeof(T) != 0) {
-      return base::invalid_field(field, fmt::format("whole positions of {} bytes, at least one", sizeof(T)),
-                                 fmt::format("{} bytes", bytes.size()));
-    }
-    if (indices != 0 && bytes.size() != sizeof(T) * indices) {
-      return base::invalid_field(field, fmt::format("{} bytes, as many positions as indices", sizeof(T) * indices),
-                                 fmt::format("{} bytes", bytes.size()));
-    }
-    std::vector<T> elements(bytes.size() / sizeof(T));
-    std::memcpy(elements.data(), bytes.data(), bytes.size());
-    return elements;
+  const auto indices = static_cast<size_t>(message.indices_size());
+  const std::string got = fmt::format("{} bytes", bytes.size());
+  if (bytes.empty() || bytes.size() % sizeof(Element) != 0) {
+    return base::invalid_field(field, fmt::format("whole positions of {} bytes, at least one", sizeof(Element)), got);
   }
-  if (indices != 0 && indices != coded) {
-    return base::invalid_field("positions.meshopt_count", fmt::format("{}, as many as indices", indices),
-                               fmt::format("{}", coded));
+  if (indices != 0 && bytes.size() != sizeof(Element) * indices) {
+    return base::invalid_field(field, fmt::format("{} bytes, as many positions as indices", sizeof(Element) * indices),
+                               got);
   }
-  if (coded * stride > kMostExpansion * bytes.size()) {
-    return base::invalid_field(
-        "positions.meshopt_count",
-        fmt::format("what {} bytes can hold, at most {}", bytes.size(), kMostExpansion * bytes.size() / stride),
-        fmt::format("{}", coded));
-  }
-  std::string decoded(coded * stride, '\0');
-  if (meshopt_decodeVertexBuffer(decoded.data(), coded, stride, reinterpret_cast<const unsigned char*>(bytes.data()),
-                                 bytes.size()) != 0) {
-    return base::invalid_field(field,
-                               fmt::format("{} elements of {} bytes by meshoptimizer's vertex codec", coded, stride),
-                               fmt::format("{} bytes that are not", bytes.size()));
-  }
-  std::vector<T> elements(coded);
-  for (uint64_t i = 0; i < coded; ++i) std::memcpy(&elements[i], &decoded[i * stride], sizeof(T));
+  std::vector<Element> elements(bytes.size() / sizeof(Element));
+  std::memcpy(elements.data(), bytes.data(), bytes.size());
   return elements;
 }
 
-absl::StatusOr<std::vector<glm::vec3>> plain_positions(const v1::VertexPositions& message) {
-  auto positions = elements_of<glm::vec3>("positions.float32", message.float32(), sizeof(glm::vec3), message);
-  if (!positions.ok()) return positions.status();
-  if (absl::Status finite = geometry::check_finite(*positions, "positions.float32"); !finite.ok()) return finite;
+/// The elements that the codec made `bytes` of.
+template <typename Element>
+absl::StatusOr<std::vector<Element>> decoded(std::string_view field, std::string_view bytes,
+                                             const v1::VertexPositions& message) {
+  const auto indices = static_cast<uint32_t>(message.indices_size());
+  const uint32_t count = message.meshopt_count();
+  if (indices != 0 && indices != count) {
+    return base::invalid_field("positions.meshopt_count", fmt::format("{}, as many as indices", indices),
+                               fmt::format("{}", count));
+  }
+  if (count > most_elements(bytes.size(), sizeof(Element))) {
+    return base::invalid_field(
+        "positions.meshopt_count",
+        fmt::format("what {} bytes can hold, at most {}", bytes.size(), most_elements(bytes.size(), sizeof(Element))),
+        fmt::format("{}", count));
+  }
+  std::vector<Element> elements(count);
+  if (meshopt_decodeVertexBuffer(elements.data(), count, sizeof(Element),
+                                 reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()) == 0) {
+    return elements;
+  }
+  return base::invalid_field(
+      field, fmt::format("{} elements of {} bytes by meshoptimizer's vertex codec", count, sizeof(Element)),
+      fmt::format("{} bytes that are not", bytes.size()));
+}
+
+absl::StatusOr<std::vector<glm::vec3>> float_positions(const v1::VertexPositions& message) {
+  constexpr std::string_view kField = "positions.float32";
+  absl::StatusOr<std::vector<glm::vec3>> positions = message.meshopt_count() == 0
+                                                         ? plain<glm::vec3>(kField, message.float32(), message)
+                                                         : decoded<glm::vec3>(kField, message.float32(), message);
+  if (!positions.ok()) return positions;
+  if (absl::Status finite = geometry::check_finite(*positions, kField); !finite.ok()) return finite;
   return positions;
 }
 
-absl::StatusOr<std::vector<glm::vec3>> quantized_positions(const v1::VertexPositions& message) {
-  const v1::QuantizedPositions& quantized = message.quantized();
-  const auto steps =
-      elements_of<Steps>("positions.quantized.uint16", quantized.uint16(), 4 * sizeof(uint16_t), message);
+template <typename Element>
+absl::StatusOr<std::vector<glm::vec3>> in_box(const absl::StatusOr<std::vector<Element>>& steps,
+                                              const v1::QuantizedPositions& box) {
   if (!steps.ok()) return steps.status();
-  const auto lowest = position_from_proto(quantized.lowest(), "positions.quantized.lowest");
+  const auto lowest = position_from_proto(box.lowest(), "positions.quantized.lowest");
   if (!lowest.ok()) return lowest.status();
-  const auto highest = position_from_proto(quantized.highest(), "positions.quantized.highest");
+  const auto highest = position_from_proto(box.highest(), "positions.quantized.highest");
   if (!highest.ok()) return highest.status();
   std::vector<glm::vec3> positions;
   positions.reserve(steps->size());
   // In double, so that the ends are met.
   const glm::dvec3 first(*lowest), step = (glm::dvec3(*highest) - first) / 65535.0;
-  for (const Steps& s : *steps) positions.emplace_back(first + glm::dvec3(s) * step);
+  for (const Element& s : *steps) positions.emplace_back(first + glm::dvec3(s) * step);
   return positions;
+}
+
+absl::StatusOr<std::vector<glm::vec3>> quantized_positions(const v1::VertexPositions& message) {
+  constexpr std::string_view kField = "positions.quantized.uint16";
+  const v1::QuantizedPositions& box = message.quantized();
+  return message.meshopt_count() == 0 ? in_box(plain<Steps>(kField, box.uint16(), message), box)
+                                      : in_box(decoded<PaddedSteps>(kField, box.uint16(), message), box);
 }
 
 }  // namespace
@@ -88,11 +104,20 @@ absl::StatusOr<std::vector<glm::vec3>> quantized_positions(const v1::VertexPosit
 absl::StatusOr<scene::PositionsPatch> from_proto(const v1::VertexPositions& message) {
   absl::StatusOr<std::vector<glm::vec3>> positions =
       base::invalid_field("positions.values", "float32 or quantized", "none");
-  if (message.values_case() == v1::VertexPositions::kFloat32) positions = plain_positions(message);
+  if (message.values_case() == v1::VertexPositions::kFloat32) positions = float_positions(message);
   if (message.has_quantized()) positions = quantized_positions(message);
   if (!positions.ok()) return positions.status();
   return scene::PositionsPatch{
       {message.indices().begin(), message.indices().end()}, *std::move(positions), message.displacements()};
+}
+
+uint64_t decoded_bytes(const v1::VertexPositions& message) {
+  const bool quantized = message.has_quantized();
+  const size_t coded = quantized ? message.quantized().uint16().size() : message.float32().size();
+  const size_t each = quantized ? sizeof(PaddedSteps) : sizeof(glm::vec3);
+  const uint64_t count = message.meshopt_count();
+  if (count > most_elements(coded, each)) return 0;
+  return count * (quantized ? each + sizeof(glm::vec3) : each);
 }
 
 }  // namespace diaphane::service

@@ -206,6 +206,20 @@ TEST_F(EditTest, DecodesWhatIsCompressedAndRefusesWhatIsNot) {
   EXPECT_EQ(server_positions()[0], glm::vec3(1, 2, 3));
 }
 
+TEST_F(EditTest, TakesTheMemoryOfWhatItDecodesFromTheBudget) {
+  start({.scene = {.max_mesh_bytes = 1 << 20}});
+  scene_ = create_scene().name();
+  mesh_ = create_mesh(scene_);
+  const v1::SceneChange right = moved({0}, {1, 1, 1});
+  const v1::SceneChange small = compressed(mesh_.name(), std::vector<float>(3 * 50'000));
+  const v1::SceneChange large = compressed(mesh_.name(), std::vector<float>(3 * 100'000));
+  EXPECT_LT(large.positions().float32().size(), 1u << 15);
+  expect_refused({right, small}, grpc::StatusCode::INVALID_ARGUMENT, "changes[1].positions");
+  expect_refused({right, large}, grpc::StatusCode::RESOURCE_EXHAUSTED, "mesh_bytes");
+  expect_refused({right, small, small}, grpc::StatusCode::RESOURCE_EXHAUSTED, "mesh_bytes");
+  EXPECT_EQ(server_positions()[0], glm::vec3(0));
+}
+
 TEST_F(EditTest, DisplacementsAreFromTheUploadedPositionsHoweverOftenTheyCome) {
   v1::SceneChange change = moved({1}, {10, 0, 0.5f});
   change.mutable_positions()->set_displacements(true);
@@ -280,6 +294,33 @@ TEST_F(EditTest, MorphsToTheBoundingSphereAndBack) {
   EXPECT_EQ(server_positions(), rest);
   EXPECT_TRUE(end(*stream).ok());
   expect_refused({morphed(1.5f)}, grpc::StatusCode::INVALID_ARGUMENT, "changes[0].sphere.amount");
+}
+
+TEST_F(EditTest, RefusesWhatLeadsBeyondTheLargestCoordinate) {
+  TestMesh data;
+  // The sphere's radius over the last vertex's way from the middle is no float.
+  data.positions = {-1e18f, 0, 0, 1e18f, 0, 0, 0, 1e-21f, 0, 0, 0, 0};
+  data.morph_targets = {std::vector<float>(12, 1e18f)};
+  v1::MeshResponse response;
+  ASSERT_TRUE(upload(data.header(scene_, mesh_.material()), data.payload(), &response).ok());
+  mesh_ = response.mesh();
+  const std::vector<glm::vec3> rest = server_positions();
+  const v1::SceneChange right = moved({0}, {1, 1, 1});
+  v1::SceneChange some = moved({2, 1}, {0, 0, 0, 1e18f, 0, 0});
+  some.mutable_positions()->set_displacements(true);
+  expect_refused({right, some}, grpc::StatusCode::INVALID_ARGUMENT, "changes[1].positions");
+  v1::SceneChange all = moved({}, std::vector<float>(12, 1e18f));
+  all.mutable_positions()->set_displacements(true);
+  expect_refused({right, all}, grpc::StatusCode::INVALID_ARGUMENT, "changes[1].positions");
+  v1::SceneChange sphere;
+  sphere.mutable_sphere()->set_mesh(mesh_.name());
+  sphere.mutable_sphere()->set_amount(1);
+  expect_refused({right, sphere}, grpc::StatusCode::INVALID_ARGUMENT, "changes[1].sphere");
+  v1::SceneChange weights;
+  weights.mutable_weights()->set_mesh(mesh_.name());
+  weights.mutable_weights()->add_weights(1e6f);
+  expect_refused({right, weights}, grpc::StatusCode::INVALID_ARGUMENT, "changes[1].weights");
+  EXPECT_EQ(server_positions(), rest);
 }
 
 TEST_F(EditTest, RefusesAWholeEditForOneWrongChangeAndNamesIt) {

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cmath>
 #include <deque>
 #include <optional>
 #include <utility>
@@ -10,11 +8,29 @@
 #include "diaphane/stream.h"
 #include "fmt/format.h"
 #include "meshoptimizer.h"
+#include "quantize.h"
 #include "reopening.h"
 
 namespace diaphane {
 
 using internal::to_proto;
+
+namespace {
+
+v1::SceneChange change_of(const MeshHandle& mesh, std::span<const uint32_t> indices) {
+  v1::SceneChange change;
+  change.mutable_positions()->set_mesh(mesh.name);
+  change.mutable_positions()->mutable_indices()->Add(indices.begin(), indices.end());
+  return change;
+}
+
+absl::Status check_counts(std::span<const uint32_t> indices, std::span<const Vec3> positions) {
+  if (indices.size() == positions.size()) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      fmt::format("indices: must be one for each of {} positions, got {}", positions.size(), indices.size()));
+}
+
+}  // namespace
 
 class Deformer::Impl {
  public:
@@ -40,31 +56,24 @@ class Deformer::Impl {
     positions.set_meshopt_count(static_cast<uint32_t>(count));
     return bytes;
   }
-  v1::SceneChange quantize(const MeshHandle& mesh, std::span<const Vec3> values, const Vec3& lowest,
-                           const Vec3& highest, bool displacements) const {
-    std::vector<uint16_t> steps;
-    // The codec's elements are of four bytes or a multiple.
-    const size_t per_vertex = options_.compress ? 4 : 3;
-    steps.reserve(per_vertex * values.size());
-    const auto add_step = [&steps](float value, float low, float high) {
-      const double share = high > low ? (double{value} - low) / (double{high} - low) : 0;
-      steps.push_back(static_cast<uint16_t>(std::lround(65535 * std::clamp(share, 0.0, 1.0))));
-    };
-    for (const Vec3& v : values) {
-      add_step(v.x, lowest.x, highest.x);
-      add_step(v.y, lowest.y, highest.y);
-      add_step(v.z, lowest.z, highest.z);
-      if (per_vertex == 4) steps.push_back(0);
-    }
-    v1::SceneChange change;
+
+  absl::Status add_floats(v1::SceneChange change, std::span<const Vec3> values) {
     v1::VertexPositions& positions = *change.mutable_positions();
-    positions.set_mesh(mesh.name);
-    positions.set_displacements(displacements);
-    *positions.mutable_quantized()->mutable_lowest() = to_proto(lowest);
-    *positions.mutable_quantized()->mutable_highest() = to_proto(highest);
-    positions.mutable_quantized()->set_uint16(
-        pack(steps.data(), values.size(), per_vertex * sizeof(uint16_t), positions));
-    return change;
+    positions.set_float32(pack(values.data(), values.size(), sizeof(Vec3), positions));
+    return add(std::move(change));
+  }
+  absl::Status add_quantized(v1::SceneChange change, std::span<const Vec3> values, const Vec3& lowest,
+                             const Vec3& highest) {
+    // The codec's elements are of four bytes or a multiple.
+    const absl::StatusOr<std::vector<uint16_t>> steps =
+        internal::steps_in_box(values, lowest, highest, options_.compress ? 4 : 3);
+    if (!steps.ok()) return steps.status();
+    v1::VertexPositions& positions = *change.mutable_positions();
+    v1::QuantizedPositions& quantized = *positions.mutable_quantized();
+    *quantized.mutable_lowest() = to_proto(lowest);
+    *quantized.mutable_highest() = to_proto(highest);
+    quantized.set_uint16(pack(steps->data(), values.size(), options_.compress ? 8 : 6, positions));
+    return add(std::move(change));
   }
 
   void begin() { group_.emplace(); }
@@ -156,27 +165,32 @@ Deformer& Deformer::operator=(Deformer&&) noexcept = default;
 Deformer::~Deformer() = default;
 
 absl::Status Deformer::set_positions(const MeshHandle& mesh, std::span<const Vec3> positions) {
-  return set_positions(mesh, {}, positions);
+  return impl_->add_floats(change_of(mesh, {}), positions);
 }
 
 absl::Status Deformer::set_positions(const MeshHandle& mesh, std::span<const uint32_t> indices,
                                      std::span<const Vec3> positions) {
-  v1::SceneChange change;
-  change.mutable_positions()->set_mesh(mesh.name);
-  change.mutable_positions()->mutable_indices()->Add(indices.begin(), indices.end());
-  change.mutable_positions()->set_float32(
-      impl_->pack(positions.data(), positions.size(), sizeof(Vec3), *change.mutable_positions()));
-  return impl_->add(std::move(change));
+  if (absl::Status status = check_counts(indices, positions); !status.ok() || indices.empty()) return status;
+  return impl_->add_floats(change_of(mesh, indices), positions);
 }
 
 absl::Status Deformer::set_quantized_positions(const MeshHandle& mesh, std::span<const Vec3> positions,
                                                const Vec3& lowest, const Vec3& highest) {
-  return impl_->add(impl_->quantize(mesh, positions, lowest, highest, false));
+  return impl_->add_quantized(change_of(mesh, {}), positions, lowest, highest);
+}
+
+absl::Status Deformer::set_quantized_positions(const MeshHandle& mesh, std::span<const uint32_t> indices,
+                                               std::span<const Vec3> positions, const Vec3& lowest,
+                                               const Vec3& highest) {
+  if (absl::Status status = check_counts(indices, positions); !status.ok() || indices.empty()) return status;
+  return impl_->add_quantized(change_of(mesh, indices), positions, lowest, highest);
 }
 
 absl::Status Deformer::set_quantized_displacements(const MeshHandle& mesh, std::span<const Vec3> displacements,
                                                    const Vec3& lowest, const Vec3& highest) {
-  return impl_->add(impl_->quantize(mesh, displacements, lowest, highest, true));
+  v1::SceneChange change = change_of(mesh, {});
+  change.mutable_positions()->set_displacements(true);
+  return impl_->add_quantized(std::move(change), displacements, lowest, highest);
 }
 
 absl::Status Deformer::set_weights(const MeshHandle& mesh, std::span<const float> weights) {

@@ -100,15 +100,20 @@ class Deformer {
 
   /// New positions of all vertices of a mesh, in mesh units; its normals are computed from now on.
   absl::Status set_positions(const MeshHandle& mesh, std::span<const Vec3> positions);
-  /// The same of some: vertex indices[i] to positions[i].
+  /// The same of some: vertex indices[i] to positions[i]. None is no change. INVALID_ARGUMENT, which the calls after it
+  /// do not repeat, for counts that differ.
   absl::Status set_positions(const MeshHandle& mesh, std::span<const uint32_t> indices,
                              std::span<const Vec3> positions);
   /// All positions in 16 bits an axis within the box from `lowest` to `highest`: half the bytes, and half a step of
-  /// (highest − lowest)/65535 lost.
+  /// (highest − lowest)/65535 lost. INVALID_ARGUMENT, which the calls after it do not repeat, for a box that is none,
+  /// or a position outside it.
   absl::Status set_quantized_positions(const MeshHandle& mesh, std::span<const Vec3> positions, const Vec3& lowest,
                                        const Vec3& highest);
-  /// The same of displacements from the uploaded positions: compressed, a quarter of the bytes where a body deforms
-  /// smoothly.
+  /// The same of some: vertex indices[i] to positions[i].
+  absl::Status set_quantized_positions(const MeshHandle& mesh, std::span<const uint32_t> indices,
+                                       std::span<const Vec3> positions, const Vec3& lowest, const Vec3& highest);
+  /// The same of all, as displacements from the uploaded positions: compressed, a quarter of the bytes where a body
+  /// deforms smoothly.
   absl::Status set_quantized_displacements(const MeshHandle& mesh, std::span<const Vec3> displacements,
                                            const Vec3& lowest, const Vec3& highest);
   /// The uploaded positions plus, of each of MeshData::morph_targets, the displacements times a weight.

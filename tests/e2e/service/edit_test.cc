@@ -1,93 +1,11 @@
 // Live changes of a scene, by gRPC.
 #include <gmock/gmock.h>
 
-#include <random>
-
 #include "glm/geometric.hpp"
-#include "meshoptimizer.h"
-#include "tests/e2e/service/test_server.h"
+#include "tests/e2e/service/edit_fixture.h"
 
 namespace diaphane::e2e {
 namespace {
-
-using Stream = grpc::ClientReaderWriter<v1::EditSceneRequest, v1::EditSceneResponse>;
-using Changes = std::vector<v1::SceneChange>;
-
-template <typename T>
-std::string bytes_of(const std::vector<T>& values) {
-  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
-}
-
-class EditTest : public ServiceTest {
- protected:
-  void SetUp() override {
-    ServiceTest::SetUp();
-    scene_ = create_scene().name();
-    mesh_ = create_mesh(scene_);
-  }
-
-  std::unique_ptr<Stream> open(grpc::ClientContext* context) {
-    auto stream = scenes_->EditScene(context);
-    v1::EditSceneRequest request;
-    request.mutable_opening()->set_scene(scene_);
-    stream->Write(request);
-    return stream;
-  }
-
-  static bool send(Stream& stream, uint64_t sequence, const Changes& changes) {
-    v1::EditSceneRequest request;
-    request.mutable_edit()->set_sequence(sequence);
-    for (const v1::SceneChange& change : changes) *request.mutable_edit()->add_changes() = change;
-    return stream.Write(request);
-  }
-
-  /// Reads until `sequence` is applied; the scene's revision then.
-  static uint64_t wait_for(Stream& stream, uint64_t sequence) {
-    v1::EditSceneResponse response;
-    while (stream.Read(&response)) {
-      if (response.applied() == sequence) return response.scene_revision();
-    }
-    ADD_FAILURE() << "the stream ended before " << sequence;
-    return 0;
-  }
-
-  static grpc::Status end(Stream& stream) {
-    stream.WritesDone();
-    v1::EditSceneResponse response;
-    while (stream.Read(&response)) {
-    }
-    return stream.Finish();
-  }
-
-  v1::SceneChange moved(const std::vector<uint32_t>& indices, const std::vector<float>& positions) const {
-    v1::SceneChange change;
-    change.mutable_positions()->set_mesh(mesh_.name());
-    change.mutable_positions()->mutable_indices()->Add(indices.begin(), indices.end());
-    change.mutable_positions()->set_float32(bytes_of(positions));
-    return change;
-  }
-
-  std::vector<glm::vec3> server_positions() {
-    const auto mesh = server_->scenes().mesh({"mesh", mesh_.name()});
-    EXPECT_TRUE(mesh.ok()) << mesh.status();
-    return mesh->shape->positions;
-  }
-
-  /// Sends one edit on a stream of its own, which must refuse it, and leave the scene as it is.
-  void expect_refused(const Changes& changes, grpc::StatusCode code, const std::string& field) {
-    const uint64_t before = get_scene(scene_).revision();
-    grpc::ClientContext context;
-    const auto stream = open(&context);
-    send(*stream, 1, changes);
-    const grpc::Status status = end(*stream);
-    EXPECT_EQ(status.error_code(), code) << status.error_message();
-    EXPECT_EQ(error_info(status).metadata().at("field"), field);
-    EXPECT_EQ(get_scene(scene_).revision(), before);
-  }
-
-  std::string scene_;
-  v1::Mesh mesh_;
-};
 
 TEST_F(EditTest, AppliesEveryKindOfChangeOfAnEditAsOneRevision) {
   v1::SceneChange material;
@@ -111,42 +29,6 @@ TEST_F(EditTest, AppliesEveryKindOfChangeOfAnEditAsOneRevision) {
   EXPECT_TRUE(end(*stream).ok());
 }
 
-TEST_F(EditTest, AfterRandomSparseEditsAndBrokenStreamsBothSidesAgreeToTheBit) {
-  std::mt19937 random(5);
-  std::vector<glm::vec3> here = server_positions();
-  struct Sent {
-    uint64_t sequence;
-    Changes changes;
-  };
-  std::vector<Sent> unconfirmed;
-  uint64_t sequence = 0;
-  constexpr uint64_t kEdits = 10'000;
-  while (sequence < kEdits || !unconfirmed.empty()) {
-    grpc::ClientContext context;
-    const auto stream = open(&context);
-    for (const Sent& sent : unconfirmed) send(*stream, sent.sequence, sent.changes);
-    const bool last = sequence + 400 >= kEdits;
-    for (int i = 0; i < 400 && sequence < kEdits; ++i) {
-      const uint32_t vertex = random() % 4;
-      const glm::vec3 to(std::uniform_real_distribution<float>(-1, 1)(random), random() % 100,
-                         1.0f / (1 + random() % 7));
-      here[vertex] = to;
-      unconfirmed.push_back({++sequence, {moved({vertex}, {to.x, to.y, to.z})}});
-      send(*stream, sequence, unconfirmed.back().changes);
-    }
-    // All but the last stream break in the middle of what they sent.
-    const uint64_t until = last ? sequence : unconfirmed.front().sequence + random() % 200;
-    v1::EditSceneResponse response;
-    uint64_t applied = 0;
-    while (applied < until && stream->Read(&response)) applied = response.applied();
-    std::erase_if(unconfirmed, [&](const Sent& sent) { return sent.sequence <= applied; });
-    if (!last) context.TryCancel();
-    const grpc::Status status = end(*stream);
-    EXPECT_EQ(status.ok(), last) << status.error_message();
-  }
-  EXPECT_EQ(server_positions(), here);
-}
-
 TEST_F(EditTest, TakesPositionsInStepsOfABox) {
   v1::SceneChange change;
   v1::VertexPositions& positions = *change.mutable_positions();
@@ -168,15 +50,12 @@ TEST_F(EditTest, TakesPositionsInStepsOfABox) {
   EXPECT_TRUE(end(*stream).ok());
 }
 
-/// All positions of the test's mesh through the codec.
+/// All positions of a mesh through the codec.
 v1::SceneChange compressed(const std::string& mesh, const std::vector<float>& positions) {
   v1::SceneChange change;
   const size_t count = positions.size() / 3;
-  std::string bytes(meshopt_encodeVertexBufferBound(count, 12), '\0');
-  bytes.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(),
-                                          positions.data(), count, 12));
   change.mutable_positions()->set_mesh(mesh);
-  change.mutable_positions()->set_float32(bytes);
+  change.mutable_positions()->set_float32(coded(positions, count));
   change.mutable_positions()->set_meshopt_count(static_cast<uint32_t>(count));
   return change;
 }

@@ -90,34 +90,6 @@ TEST_F(LiveClientTest, QuantizedPositionsAreWithinHalfAStep) {
   }
 }
 
-TEST_F(LiveClientTest, CompressedSparseEditsOverRestartedStreamsAgreeToTheBitOrTheStep) {
-  Deformer deformer = scene_->deform({.compress = true});
-  std::mt19937 random(11);
-  std::vector<Vec3> here = mesh_.positions;
-  for (int i = 0; i < 2000; ++i) {
-    std::vector<uint32_t> indices;
-    std::vector<Vec3> positions;
-    for (int k = 0; k < 20; ++k) {
-      indices.push_back(random() % here.size());
-      positions.push_back({1.0f / (1 + random() % 9), float(random() % 99), -1.5f});
-      here[indices.back()] = positions.back();
-    }
-    ASSERT_TRUE(deformer.set_positions(body_, indices, positions).ok());
-  }
-  ASSERT_TRUE(deformer.flush().ok());
-  EXPECT_EQ(server_positions(), here);
-  const Vec3 lowest{-2, -2, -2}, highest{2, 2, 2};
-  std::vector<Vec3> displacements(here.size());
-  for (Vec3& d : displacements) d = {0.01f * float(random() % 100), -0.5f, 1.25f};
-  ASSERT_TRUE(deformer.set_quantized_displacements(body_, displacements, lowest, highest).ok());
-  ASSERT_TRUE(deformer.flush().ok());
-  const std::vector<Vec3> found = server_positions();
-  for (size_t i = 0; i < found.size(); ++i) {
-    EXPECT_NEAR(found[i].x, mesh_.positions[i].x + displacements[i].x, 0.51 * 4 / 65535 + 2e-6);
-    EXPECT_NEAR(found[i].z, mesh_.positions[i].z + displacements[i].z, 0.51 * 4 / 65535 + 2e-6);
-  }
-}
-
 TEST_F(LiveClientTest, AFrameThatIsAskedForShowsWhatIsNewestThen) {
   StreamOptions on_demand = options();
   on_demand.view.lossless_at_rest = false;

@@ -142,6 +142,7 @@ class Deformer::Impl {
     stream_ = connection_->scene_service()->EditScene(&*context_);
     v1::EditSceneRequest request;
     request.mutable_opening()->set_scene(scene_);
+    request.mutable_opening()->set_editor_id(id_);
     stream_->Write(request);
     for (const v1::EditSceneRequest& waiting : waiting_) stream_->Write(waiting);
   }
@@ -150,6 +151,7 @@ class Deformer::Impl {
   const std::shared_ptr<internal::Connection> connection_;
   internal::Reopening reopening_;
   const std::string scene_;
+  const std::string id_ = internal::new_request_id();
   uint64_t sequence_ = 0;
   uint64_t revision_ = 0;
   std::deque<v1::EditSceneRequest> waiting_;  // sent, and not known to be applied

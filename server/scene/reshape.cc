@@ -153,7 +153,6 @@ absl::Status Reshaping::follow(const SceneSnapshot& scene) {
     }
   }
   for (Reshaped& reshaped : meshes_) {
-    if (!status_.ok()) return absl::OkStatus();
     const auto found = find_child(scene.meshes, reshaped.mesh->name);
     if (found == scene.meshes.end()) {
       const SceneChange& change = changes_[reshaped.changes.front()];

@@ -8,9 +8,14 @@
 #include "service/convert/status.h"
 
 namespace diaphane::service {
+namespace {
 
-EditStream::EditStream(scene::SceneStore& store, OpenStreams& open_streams)
-    : store_(store), open_streams_(open_streams) {
+constexpr size_t kMaxEditorIdBytes = 64;
+
+}  // namespace
+
+EditStream::EditStream(scene::SceneStore& store, Editors& editors, OpenStreams& open_streams)
+    : store_(store), editors_(editors), open_streams_(open_streams) {
   id_ = open_streams_.add([this] {
     const absl::MutexLock lock(&mutex_);
     if (!ending_.has_value()) ending_ = absl::UnavailableError("the server is stopping");
@@ -50,18 +55,27 @@ void EditStream::OnCancel() {
 }
 
 absl::Status EditStream::take(const v1::EditSceneRequest& request) {
-  if (request.has_opening()) {
-    if (!scene_.empty()) return base::invalid_field("part", "one opening", "a second");
-    scene_ = request.opening().scene();
-    return store_.scene({"scene", scene_}).status();
-  }
+  if (request.has_opening()) return open(request.opening());
   if (scene_.empty()) return base::invalid_field("part", "an opening first", "none");
   if (!request.has_edit()) return base::invalid_field("part", "an edit", "nothing");
   try {
-    return apply(request.edit());
+    return editor_->apply(turn_, [&] { return apply(request.edit()); });
   } catch (const std::bad_alloc&) {
     return absl::ResourceExhaustedError("out of memory");
   }
+}
+
+absl::Status EditStream::open(const v1::EditOpening& opening) {
+  if (!scene_.empty()) return base::invalid_field("part", "one opening", "a second");
+  if (opening.editor_id().size() > kMaxEditorIdBytes) {
+    return base::invalid_field("opening.editor_id", fmt::format("at most {} bytes", kMaxEditorIdBytes),
+                               fmt::format("{} bytes", opening.editor_id().size()));
+  }
+  if (absl::Status known = store_.scene({"scene", opening.scene()}).status(); !known.ok()) return known;
+  scene_ = opening.scene();
+  editor_ = editors_.find(scene_, opening.editor_id());
+  turn_ = editor_->take_over();
+  return absl::OkStatus();
 }
 
 absl::Status EditStream::apply(const v1::SceneEdit& edit) {

@@ -1,6 +1,7 @@
 // Live changes of a scene, as a stream.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -8,6 +9,7 @@
 #include "absl/synchronization/mutex.h"
 #include "diaphane/v1/scene_service.grpc.pb.h"
 #include "scene/scene_store.h"
+#include "service/editors.h"
 #include "service/open_streams.h"
 
 namespace diaphane::service {
@@ -16,7 +18,7 @@ namespace diaphane::service {
 /// held back by its own stream. Finishes exactly once. Deletes itself.
 class EditStream final : public grpc::ServerBidiReactor<v1::EditSceneRequest, v1::EditSceneResponse> {
  public:
-  EditStream(scene::SceneStore& store, OpenStreams& open_streams);
+  EditStream(scene::SceneStore& store, Editors& editors, OpenStreams& open_streams);
 
   void OnReadDone(bool ok) override;
   void OnWriteDone(bool ok) override;
@@ -25,16 +27,20 @@ class EditStream final : public grpc::ServerBidiReactor<v1::EditSceneRequest, v1
 
  private:
   absl::Status take(const v1::EditSceneRequest& request);
+  absl::Status open(const v1::EditOpening& opening);
   absl::Status apply(const v1::SceneEdit& edit);
   void acknowledge() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void finish(const absl::Status& status) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   scene::SceneStore& store_;
+  Editors& editors_;
   OpenStreams& open_streams_;
   uint64_t id_ = 0;  ///< in open_streams_
   // Of the reading thread.
   v1::EditSceneRequest request_;
   std::string scene_;
+  std::shared_ptr<Editor> editor_;
+  uint64_t turn_ = 0;                 ///< of this stream among the editor's
   std::optional<uint64_t> sequence_;  ///< of the last edit
 
   absl::Mutex mutex_;

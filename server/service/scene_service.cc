@@ -62,7 +62,7 @@ SceneService::Unary* SceneService::DeleteScene(Context* context, const v1::Delet
 }
 
 grpc::ServerBidiReactor<v1::EditSceneRequest, v1::EditSceneResponse>* SceneService::EditScene(Context*) {
-  return new EditStream(store_, open_streams_);
+  return new EditStream(store_, editors_, open_streams_);
 }
 
 }  // namespace diaphane::service

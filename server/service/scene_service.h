@@ -3,6 +3,7 @@
 #include "base/worker_pool.h"
 #include "diaphane/v1/scene_service.grpc.pb.h"
 #include "scene/scene_store.h"
+#include "service/editors.h"
 #include "service/limits.h"
 #include "service/open_streams.h"
 #include "service/reply_memory.h"
@@ -69,6 +70,7 @@ class SceneService final : public v1::SceneService::CallbackService {
   const ServiceLimits limits_;
   scene::SceneStore& store_;
   base::WorkerPool& workers_;
+  Editors editors_;
   OpenStreams& open_streams_;
   ReplyMemory replies_;
 };

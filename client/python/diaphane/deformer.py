@@ -2,6 +2,7 @@
 
 import collections
 import queue
+import uuid
 from typing import Callable
 
 import grpc
@@ -43,6 +44,7 @@ class Deformer:
     def __init__(self, open_call: Callable, scene: str, timeout_s: float):
         self._open_call = open_call
         self._scene = scene
+        self._id = uuid.uuid4().hex
         self._reopening = Reopening(timeout_s)
         self._call: grpc.Call | None = None
         self._requests: queue.SimpleQueue = queue.SimpleQueue()
@@ -137,7 +139,7 @@ class Deformer:
 
     def _open(self) -> None:
         self._requests = queue.SimpleQueue()
-        opening = scene_service_pb2.EditOpening(scene=self._scene)
+        opening = scene_service_pb2.EditOpening(scene=self._scene, editor_id=self._id)
         self._requests.put(scene_service_pb2.EditSceneRequest(opening=opening))
         for waiting in self._waiting:
             self._requests.put(waiting)

@@ -34,10 +34,11 @@ class EditTest : public ServiceTest {
     mesh_ = create_mesh(scene_);
   }
 
-  std::unique_ptr<Stream> open(grpc::ClientContext* context) {
+  std::unique_ptr<Stream> open(grpc::ClientContext* context, const std::string& editor_id = "") {
     auto stream = scenes_->EditScene(context);
     v1::EditSceneRequest request;
     request.mutable_opening()->set_scene(scene_);
+    request.mutable_opening()->set_editor_id(editor_id);
     stream->Write(request);
     return stream;
   }

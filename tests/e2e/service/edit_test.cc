@@ -1,6 +1,10 @@
 // Live changes of a scene, by gRPC.
 #include <gmock/gmock.h>
 
+#include <atomic>
+#include <set>
+#include <thread>
+
 #include "glm/geometric.hpp"
 #include "tests/e2e/service/edit_fixture.h"
 
@@ -220,6 +224,47 @@ TEST_F(EditTest, RefusesAWholeEditForOneWrongChangeAndNamesIt) {
   expect_refused({}, grpc::StatusCode::INVALID_ARGUMENT, "changes");
   expect_refused({v1::SceneChange()}, grpc::StatusCode::INVALID_ARGUMENT, "changes[0].change");
   EXPECT_EQ(server_positions()[0], glm::vec3(0));
+}
+
+TEST_F(EditTest, NothingOfAStreamIsAppliedOnceAnotherTookItsPlace) {
+  // A client whose connection broke comes back before the server has noticed, and while it is busy with the old edits.
+  grpc::ClientContext broken, unbroken;
+  const auto old_stream = open(&broken, "an editor");
+  std::atomic<bool> is_open{true};
+  std::thread old_edits([&] {
+    for (uint64_t i = 1; is_open; ++i) is_open = send(*old_stream, i, {moved({0}, {1, 1, 1})});
+  });
+  v1::EditSceneResponse response;
+  ASSERT_TRUE(old_stream->Read(&response));
+  const auto stream = open(&unbroken, "an editor");
+  constexpr uint64_t kEdits = 500;
+  for (uint64_t i = 1; i <= kEdits; ++i) send(*stream, i, {moved({0}, {2, 2, 2})});
+  std::set<uint64_t> revisions_before;
+  while (response.applied() != kEdits || revisions_before.empty()) {
+    ASSERT_TRUE(stream->Read(&response));
+    revisions_before.insert(response.scene_revision() - response.applied());
+  }
+  EXPECT_THAT(revisions_before, ::testing::SizeIs(1));
+  old_edits.join();
+  EXPECT_EQ(end(*old_stream).error_code(), grpc::StatusCode::ABORTED);
+  EXPECT_EQ(get_scene(scene_).revision(), response.scene_revision());
+  EXPECT_EQ(server_positions()[0], glm::vec3(2));
+  EXPECT_TRUE(end(*stream).ok());
+}
+
+TEST_F(EditTest, StreamsOfSeveralEditorsGoOnBesideEachOther) {
+  grpc::ClientContext contexts[4];
+  std::vector<std::unique_ptr<Stream>> streams;
+  for (const char* editor : {"", "", "a", "b"}) streams.push_back(open(&contexts[streams.size()], editor));
+  for (uint64_t i = 1; i <= 20; ++i) {
+    for (const auto& stream : streams) {
+      send(*stream, i, {moved({0}, {float(i), 0, 0})});
+      wait_for(*stream, i);
+    }
+  }
+  for (const auto& stream : streams) EXPECT_TRUE(end(*stream).ok());
+  grpc::ClientContext context;
+  EXPECT_EQ(error_info(end(*open(&context, std::string(65, 'a')))).metadata().at("field"), "opening.editor_id");
 }
 
 TEST_F(EditTest, RefusesSequencesThatDoNotFollowAndStreamsWithoutAnOpening) {

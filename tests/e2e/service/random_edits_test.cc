@@ -24,7 +24,7 @@ class RandomEditsTest : public EditTest {
     uint64_t sequence = 0;
     while (sequence < kEdits || !unconfirmed.empty()) {
       grpc::ClientContext context;
-      const auto stream = open(&context);
+      const auto stream = open(&context, "random");
       for (const Sent& sent : unconfirmed) send(*stream, sent.sequence, sent.changes);
       const bool last = sequence + 400 >= kEdits;
       for (int i = 0; i < 400 && sequence < kEdits; ++i) {

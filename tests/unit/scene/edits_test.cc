@@ -61,6 +61,9 @@ TEST_F(EditsTest, TellsTheFirstChangeThatCannotBe) {
   EXPECT_EQ(field({unknown, beyond}), "changes[0].material.name");
   EXPECT_EQ(field({beyond, unknown}), "changes[0].positions.indices[0]");
   EXPECT_EQ(field({moved({0}, {glm::vec3(5)}), far, unknown}), "changes[1].positions");
+  SceneChange far_elsewhere = far;
+  far_elsewhere.name = add_triangle(*store_, scene_, material_).value.name;
+  EXPECT_EQ(field({moved({0}, {glm::vec3(5)}), far_elsewhere, far, beyond}), "changes[1].positions");
   EXPECT_EQ(
       apply({far}).status().message(),
       "changes[0].positions: must be what leads to positions that are finite, within ±1e18, got one at (0, 2e+18, "

@@ -7,8 +7,8 @@
 
 namespace diaphane::service {
 
-/// Plain, quantised or compressed. What is decoded is bounded by the bytes that came, and by decoded_bytes(). Errors name
-/// the field, from "positions" on.
+/// Plain, quantised or compressed. What is decoded is bounded by the bytes that came, and by decoded_bytes(). Errors
+/// name the field, from "positions" on.
 absl::StatusOr<scene::PositionsPatch> from_proto(const v1::VertexPositions& message);
 
 /// What from_proto() takes at most to decode compressed positions; 0 for what it refuses before.

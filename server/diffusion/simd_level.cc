@@ -1,5 +1,7 @@
 #include "diffusion/simd_level.h"
 
+#include <atomic>
+
 #include "hwy/highway.h"
 
 namespace diaphane::diffusion {
@@ -7,9 +9,15 @@ namespace {
 
 std::vector<int64_t> usable_targets() { return hwy::SupportedAndGeneratedTargets(); }
 
+/// Asked of every frame: the list of targets would be made anew each time.
+std::atomic<const char*>& current_level() {
+  static std::atomic<const char*> level = hwy::TargetName(usable_targets().front());
+  return level;
+}
+
 }  // namespace
 
-std::string simd_level() { return hwy::TargetName(usable_targets().front()); }
+std::string simd_level() { return current_level().load(); }
 
 std::vector<std::string> simd_levels() {
   std::vector<std::string> names;
@@ -28,6 +36,7 @@ bool choose_simd_level(const std::string& level) {
   if (!known && simd_level() != before) return choose_simd_level(before), false;
   hwy::SetSupportedTargetsForTest(chosen);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  current_level() = hwy::TargetName(usable_targets().front());
   return known;
 }
 

@@ -41,13 +41,16 @@ glm::mat3 cofactors(const glm::mat3& m) {
 
 }  // namespace
 
-std::vector<glm::vec3> compute_normals(const MeshTopology& topology, std::span<const glm::vec3> positions) {
-  std::vector<glm::vec3> area_vectors(topology.triangles.size());
+namespace {
+
+void fill_normals(const MeshTopology& topology, std::span<const glm::vec3> positions,
+                  std::vector<glm::vec3>& area_vectors, std::vector<glm::vec3>& normals) {
+  area_vectors.resize(topology.triangles.size());
   for_each(area_vectors.size(), [&](size_t t) {
     const glm::uvec3& i = topology.triangles[t];
     area_vectors[t] = glm::cross(positions[i.y] - positions[i.x], positions[i.z] - positions[i.x]);
   });
-  std::vector<glm::vec3> normals(topology.vertex_count);
+  normals.resize(topology.vertex_count);
   for_each(normals.size(), [&](size_t v) {
     const uint32_t w = topology.weld_of_vertex[v];
     glm::vec3 sum(0);
@@ -56,6 +59,13 @@ std::vector<glm::vec3> compute_normals(const MeshTopology& topology, std::span<c
     }
     normals[v] = normalised_or(sum, {0, 0, 1});
   });
+}
+
+}  // namespace
+
+std::vector<glm::vec3> compute_normals(const MeshTopology& topology, std::span<const glm::vec3> positions) {
+  std::vector<glm::vec3> area_vectors, normals;
+  fill_normals(topology, positions, area_vectors, normals);
   return normals;
 }
 
@@ -79,8 +89,8 @@ Bounds place_positions(const MeshShape& shape, const glm::mat4& scene_from_mesh,
 }
 
 void place_normals(const MeshTopology& topology, const MeshShape& shape, const glm::mat4& scene_from_mesh,
-                   PlacedShape& placed) {
-  placed.normals = compute_normals(topology, placed.positions_mm);
+                   PlacedShape& placed, std::vector<glm::vec3>& scratch) {
+  fill_normals(topology, placed.positions_mm, scratch, placed.normals);
   if (placed.flipped) {
     for (glm::vec3& n : placed.normals) n = -n;
   }

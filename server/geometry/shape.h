@@ -33,9 +33,10 @@ struct Bounds {
 Bounds place_positions(const MeshShape& shape, const glm::mat4& scene_from_mesh, double millimetres_per_unit,
                        PlacedShape& placed);
 
-/// Gives `placed` its normals: those of `shape` turned; computed ones where it has none, or one of no length.
+/// Gives `placed` its normals: those of `shape` turned; computed ones where it has none, or one of no length. `scratch`
+/// keeps memory from call to call.
 void place_normals(const MeshTopology& topology, const MeshShape& shape, const glm::mat4& scene_from_mesh,
-                   PlacedShape& placed);
+                   PlacedShape& placed, std::vector<glm::vec3>& scratch);
 
 /// Area-weighted unit normals, equal at all vertices of a weld. A weld with no area gets +z.
 std::vector<glm::vec3> compute_normals(const MeshTopology& topology, std::span<const glm::vec3> positions);

@@ -124,6 +124,8 @@ class FrameRenderer {
   /// Errors: FAILED_PRECONDITION no mesh, or no environment for the background; CANCELLED once `cancelled` is seen set;
   /// RESOURCE_EXHAUSTED out of memory.
   virtual absl::StatusOr<Frame> render(const FrameRequest& request, const std::atomic<bool>& cancelled) = 0;
+  /// Takes back a frame that nobody needs any more: the next one is made in its memory. Any thread.
+  virtual void recycle(Frame /*frame*/) {}
   virtual RendererInfo info() const = 0;
 };
 

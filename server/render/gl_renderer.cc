@@ -1,7 +1,11 @@
 #include "render/gl_renderer.h"
 
+#include <iterator>
 #include <utility>
+#include <vector>
 
+#include "absl/base/thread_annotations.h"
+#include "absl/synchronization/mutex.h"
 #include "base/log.h"
 #include "diffusion/simd_level.h"
 #include "fmt/format.h"
@@ -25,20 +29,30 @@ const char* technique_path(Technique technique, bool native) {
   return "lambert: full-screen";
 }
 
-/// Thread: the one that made it, as FrameRenderer asks.
+/// Thread: the one that made it, as FrameRenderer asks; recycle() any.
 class GlRenderer final : public FrameRenderer {
  public:
   GlRenderer(std::unique_ptr<gl::Context> context, Shading shading, bool native)
       : context_(std::move(context)), painter_(std::move(shading), native) {}
 
   absl::StatusOr<Frame> render(const FrameRequest& request, const std::atomic<bool>& cancelled) override {
-    absl::StatusOr<Frame> frame = painter_.paint(request, cancelled);
+    Frame spare = take_spare();
+    std::string path = std::move(spare.path);
+    absl::StatusOr<Frame> frame = painter_.paint(request, cancelled, std::move(spare));
     if (absl::Status errors = context_->take_errors(); frame.ok() && !errors.ok()) return errors;
     if (frame.ok()) {
-      frame->path = fmt::format("{}; {}; {}", technique_path(request.settings.technique, painter_.was_native()),
-                                context_->info().software ? "software" : "gpu", diffusion::simd_level());
+      path.clear();
+      fmt::format_to(std::back_inserter(path), "{}; {}; {}",
+                     technique_path(request.settings.technique, painter_.was_native()),
+                     context_->info().software ? "software" : "gpu", diffusion::simd_level());
+      frame->path = std::move(path);
     }
     return frame;
+  }
+
+  void recycle(Frame frame) override {
+    absl::MutexLock lock(&spares_mutex_);
+    if (spares_.size() < kMostSpares) spares_.push_back(std::move(frame));
   }
 
   RendererInfo info() const override {
@@ -47,6 +61,18 @@ class GlRenderer final : public FrameRenderer {
   }
 
  private:
+  static constexpr size_t kMostSpares = 4;
+
+  Frame take_spare() {
+    absl::MutexLock lock(&spares_mutex_);
+    if (spares_.empty()) return {};
+    Frame spare = std::move(spares_.back());
+    spares_.pop_back();
+    return spare;
+  }
+
+  absl::Mutex spares_mutex_;
+  std::vector<Frame> spares_ ABSL_GUARDED_BY(spares_mutex_);
   std::unique_ptr<gl::Context> context_;  // first in, last out: the painter frees GL objects
   ScenePainter painter_;
 };

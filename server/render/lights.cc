@@ -49,22 +49,21 @@ LightStorage storage_of(const scene::SpotLight& spot, float millimetres_per_unit
 
 }  // namespace
 
-std::vector<LightStorage> lights_of(const scene::SceneSnapshot& scene, const geometry::Bounds& bounds_mm) {
-  if (scene.lights.empty() && scene.environment == nullptr) return {key_light(bounds_mm)};
-  std::vector<LightStorage> lights;
-  lights.reserve(scene.lights.size());
+void list_lights(const scene::SceneSnapshot& scene, const geometry::Bounds& bounds_mm,
+                 std::vector<LightStorage>& lights) {
+  lights.clear();
+  if (scene.lights.empty() && scene.environment == nullptr) lights.push_back(key_light(bounds_mm));
   const auto scale = static_cast<float>(scene.millimetres_per_unit);
   for (const scene::Light& light : scene.lights) {
     lights.push_back(std::visit([&](const auto& kind) { return storage_of(kind, scale); }, light.kind));
   }
-  if (scene.environment == nullptr) return lights;
+  if (scene.environment == nullptr) return;
   const scene::Environment& environment = *scene.environment;
   for (const optics::EnvironmentLamp& lamp : environment.light->lamps) {
     lights.push_back(storage_of(scene::DirectionalLight{rotated_about_y(lamp.direction, environment.rotation_deg),
                                                         environment.intensity * lamp.irradiance},
                                 scale));
   }
-  return lights;
 }
 
 ArrivingLight arriving_light(const LightStorage& light, const glm::vec3& position_mm) {

@@ -9,11 +9,12 @@
 
 namespace diaphane::render {
 
-/// All lights of `scene`, its environment's lamps after them; where it has neither, one key light for a body within
-/// `bounds_mm`: from above, left and in front
+/// Fills `lights` with all lights of `scene`, its environment's lamps after them; where it has neither, one key light
+/// for a body within `bounds_mm`: from above, left and in front
 /// (+y, −x, +z) at 2.5 times the radius of the bounding sphere, with an unattenuated irradiance of 2 W·mm⁻² at its
 /// centre.
-std::vector<LightStorage> lights_of(const scene::SceneSnapshot& scene, const geometry::Bounds& bounds_mm);
+void list_lights(const scene::SceneSnapshot& scene, const geometry::Bounds& bounds_mm,
+                 std::vector<LightStorage>& lights);
 
 /// Light at a point before any surface is asked. shaders/shared/lights.glsl says the same.
 struct ArrivingLight {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <utility>
 
 namespace diaphane::render {
 
@@ -10,10 +9,10 @@ namespace diaphane::render {
 template <typename Key>
 class Memo {
  public:
-  /// Whether `key` differs from the last one; remembers it.
-  bool renew(Key key) {
+  /// Whether `key` differs from the last one; remembers it, in the memory of the last.
+  bool renew(const Key& key) {
     if (last_.has_value() && *last_ == key) return false;
-    last_ = std::move(key);
+    last_ = key;
     return true;
   }
   void forget() { last_.reset(); }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <utility>
 
 #include "glm/geometric.hpp"
 #include "render/raster.h"
@@ -129,8 +128,8 @@ void NativeCube::fill_rows(const RasterMesh& mesh, int face, int begin, int end)
   flush();
 }
 
-void NativeCube::draw(AtlasKey key, const BoxUniforms& box, const RasterMesh& mesh) {
-  key_ = std::move(key);
+void NativeCube::draw(const AtlasKey& key, const BoxUniforms& box, const RasterMesh& mesh) {
+  key_ = key;
   box_ = box;
   if (size_px_ != box.face_size_px) {
     size_px_ = box.face_size_px;

@@ -19,7 +19,7 @@ class NativeCube {
 
   /// Pass 1, spread over all cores: the same bytes on any number of them. `mesh.values`: E with shadows at the
   /// vertices, instead of the lights'. One thread calls; memory is kept while the face size is the same.
-  void draw(AtlasKey key, const BoxUniforms& box, const RasterMesh& mesh);
+  void draw(const AtlasKey& key, const BoxUniforms& box, const RasterMesh& mesh);
 
   const AtlasKey& key() const { return key_; }
   const BoxUniforms& box() const { return box_; }

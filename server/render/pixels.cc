@@ -11,12 +11,16 @@ namespace diaphane::render {
 Canvas make_canvas(Frame& frame, const FrameRequest& request, PixelFormat format) {
   const size_t pixels = size_t{request.width_px} * request.height_px;
   if (format == PixelFormat::kSrgb8) {
-    auto& image = frame.image.emplace<base::Image8>(
-        base::Image8{request.width_px, request.height_px, std::vector<uint8_t>(4 * pixels)});
+    std::vector<uint8_t> rgba;
+    if (auto* spare = std::get_if<base::Image8>(&frame.image)) rgba = std::move(spare->rgba);
+    rgba.resize(4 * pixels);
+    auto& image = frame.image.emplace<base::Image8>(base::Image8{request.width_px, request.height_px, std::move(rgba)});
     return {image.rgba.data(), request.width_px, request.height_px, 4};
   }
   std::vector<std::string> names = channel_names(request.channels);
-  std::vector<float> values(names.size() * pixels);
+  std::vector<float> values;
+  if (auto* spare = std::get_if<base::ImageF>(&frame.image)) values = std::move(spare->values);
+  values.resize(names.size() * pixels);
   const size_t pixel_bytes = names.size() * sizeof(float);
   auto& image = frame.image.emplace<base::ImageF>(
       base::ImageF{request.width_px, request.height_px, std::move(names), std::move(values)});

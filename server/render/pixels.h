@@ -9,7 +9,8 @@
 
 namespace diaphane::render {
 
-/// Gives `frame` a picture of the request's size and channels, all zero.
+/// Gives `frame` a picture of the request's size and channels, in the memory of the one that it had. Its pixels are
+/// to be written, all of them.
 Canvas make_canvas(Frame& frame, const FrameRequest& request, PixelFormat format);
 
 /// Linear radiance to RGBA32F, or after scaling to RGBA8 with sRGB-encoded colour, as GL does it.

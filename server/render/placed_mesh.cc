@@ -32,7 +32,8 @@ void PlacedMesh::complete_normals(StageClock& clock) {
     clock.sleep("normals");
     return;
   }
-  clock.run("normals", [&] { geometry::place_normals(*topology_.lock(), *shape_.lock(), scene_from_mesh_, placed_); });
+  clock.run("normals",
+            [&] { geometry::place_normals(*topology_.lock(), *shape_.lock(), scene_from_mesh_, placed_, scratch_); });
 }
 
 }  // namespace diaphane::render

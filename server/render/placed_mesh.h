@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "geometry/shape.h"
 #include "glm/mat4x4.hpp"
@@ -33,6 +34,7 @@ class PlacedMesh {
   glm::mat4 scene_from_mesh_{0};
   double millimetres_per_unit_ = 0;
   geometry::PlacedShape placed_;
+  std::vector<glm::vec3> scratch_;
   geometry::Bounds bounds_mm_;
   uint64_t generation_ = 0;
 };

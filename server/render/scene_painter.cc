@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "absl/cleanup/cleanup.h"
 #include "fmt/format.h"
 #include "render/backdrop.h"
 #include "render/develop.h"
@@ -159,7 +160,8 @@ absl::Status ScenePainter::draw_tile(Job& job, const Tile& tile, uint8_t* pixels
   return absl::OkStatus();
 }
 
-absl::StatusOr<Frame> ScenePainter::paint(const FrameRequest& request, const std::atomic<bool>& cancelled) {
+absl::StatusOr<Frame> ScenePainter::paint(const FrameRequest& request, const std::atomic<bool>& cancelled,
+                                          Frame spare) {
   const scene::SceneSnapshot& scene = *request.scene;
   if (scene.meshes.empty()) return absl::FailedPreconditionError(fmt::format("{}: has no mesh to draw", scene.name));
   if (request.settings.environment_background && scene.environment == nullptr) {
@@ -169,7 +171,12 @@ absl::StatusOr<Frame> ScenePainter::paint(const FrameRequest& request, const std
   const bool picture = request.format == PixelFormat::kSrgb8;
   const bool coated = has_coats(request);
   const bool developed = picture && (coated || needs_developing(request.settings));
-  Job job{request, cancelled, needs_of(request), developed ? PixelFormat::kLinearFloat : request.format, coated};
+  Job job{request, cancelled, needs_of(request), developed ? PixelFormat::kLinearFloat : request.format, coated,
+          drawn_,  lights_};
+  // What a scene lets go of is not kept by its last frame.
+  const absl::Cleanup forget = [this] { drawn_.clear(); };
+  drawn_.clear();
+  job.clock = StageClock(std::move(spare.stages));
   const Technique technique = request.settings.technique;
   job.variant.lit = (casts_shadows(request.settings) || scene.environment != nullptr) &&
                     (technique == Technique::kPaper || technique == Technique::kLambert);
@@ -185,7 +192,8 @@ absl::StatusOr<Frame> ScenePainter::paint(const FrameRequest& request, const std
   job.view.eye_mm = glm::vec4(request.camera.eye * static_cast<float>(scene.millimetres_per_unit), 1);
   job.view.radiance_scale = picture && !developed ? std::exp2(request.settings.exposure_ev) : 1.0f;
 
-  Frame frame;
+  Frame frame = std::move(spare);
+  frame.exposure_ev = 0;
   frame.scene_revision = scene.revision;
   if (absl::Status drawn = draw_tiles(job, frame); !drawn.ok()) return drawn;
   if (request.settings.background) lay_over(*request.settings.background, std::get<base::ImageF>(frame.image));

@@ -28,8 +28,8 @@ class ScenePainter {
   /// `native`: what triangles show is found on the CPU, for techniques that have it.
   ScenePainter(Shading shading, bool native) : shading_(std::move(shading)), native_(native) {}
 
-  /// Errors: as FrameRenderer::render.
-  absl::StatusOr<Frame> paint(const FrameRequest& request, const std::atomic<bool>& cancelled);
+  /// The frame is made in the memory of `spare`. Errors: as FrameRenderer::render.
+  absl::StatusOr<Frame> paint(const FrameRequest& request, const std::atomic<bool>& cancelled, Frame spare = {});
   /// Whether the last frame's triangles went without OpenGL.
   bool was_native() const { return was_native_; }
 
@@ -40,12 +40,12 @@ class ScenePainter {
     const std::atomic<bool>& cancelled;
     ChannelNeeds needs;  ///< of the pass at hand
     PixelFormat format;  ///< that is drawn
-    bool coated = false;
+    bool coated;
+    std::vector<DrawnMesh>& meshes;  ///< the painter's, as the next
+    std::vector<LightStorage>& lights;
     bool native = false;
     Variant variant{};
-    std::vector<DrawnMesh> meshes{};
     geometry::Bounds bounds_mm{};
-    std::vector<LightStorage> lights{};
     Ambient ambient{};
     ViewUniforms view{};
     StageClock clock{};
@@ -62,7 +62,7 @@ class ScenePainter {
   void bound_memory(const Job& job);
   absl::Status refine(Job& job);
   void update_shadows(Job& job);
-  static AtlasKey atlas_key(const DrawnMesh& drawn, const Job& job);
+  const AtlasKey& atlas_key(const DrawnMesh& drawn, const Job& job);
   void update_atlas(const DrawnMesh& drawn, Job& job);
   void update_integral(const DrawnMesh& drawn, bool shadowed, Job& job);
   absl::Status update_lit(const DrawnMesh& drawn, bool shadowed, Job& job);
@@ -107,6 +107,13 @@ class ScenePainter {
   bool was_native_ = false;
   NativeView view_;
   std::vector<RasterMesh> raster_meshes_;
+  // Of one frame, in the memory of the last.
+  std::vector<DrawnMesh> drawn_;
+  std::vector<LightStorage> lights_;
+  std::vector<uint8_t> tile_pixels_;
+  AtlasKey atlas_key_;
+  std::vector<ShadowCaster> casters_;
+  std::vector<uint64_t> places_;
   SrgbTable srgb_;
   CoatLayer coats_;
   GpuTextures textures_;

@@ -31,7 +31,7 @@ RasterMesh ScenePainter::raster_mesh(const Job& job, size_t mesh_index) const {
 
 void ScenePainter::update_native_atlas(const DrawnMesh& drawn, Job& job) {
   NativePaper& paper = drawn.state->native_paper;
-  AtlasKey key = atlas_key(drawn, job);
+  const AtlasKey& key = atlas_key(drawn, job);
   const auto mesh_index = static_cast<size_t>(&drawn - job.meshes.data());
   if (paper.cube.size_px() > 0 && paper.cube.key() == key) {
     job.clock.sleep("atlas");
@@ -39,7 +39,7 @@ void ScenePainter::update_native_atlas(const DrawnMesh& drawn, Job& job) {
     job.clock.run("atlas", [&] {
       const BoxUniforms box = fit_box(drawn.state->placed.bounds_mm(), key.face_size_px);
       // The outermost surface of a closed body faces outwards.
-      paper.cube.draw(std::move(key), box, raster_mesh(job, mesh_index));
+      paper.cube.draw(key, box, raster_mesh(job, mesh_index));
     });
   }
   paper.prepare_kernels(drawn.material);

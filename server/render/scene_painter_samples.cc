@@ -58,7 +58,8 @@ absl::Status ScenePainter::draw_tiles(Job& job, Frame& frame) {
   const Canvas canvas = make_canvas(frame, request, job.format);
   const bool linear = job.format == PixelFormat::kLinearFloat;
   const size_t pixel_bytes = linear ? sizeof(glm::vec4) : 4;
-  std::vector<uint8_t> pixels(size_t{target_width} * target_height * pixel_bytes);
+  std::vector<uint8_t>& pixels = tile_pixels_;
+  pixels.resize(size_t{target_width} * target_height * pixel_bytes);
   return for_each_tile(request.width_px, request.height_px, [&](const Tile& tile) {
     absl::Status status = draw_sampled_tile(job, tile, pixels.data());
     if (!status.ok()) return status;

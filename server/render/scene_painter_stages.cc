@@ -45,23 +45,23 @@ void ScenePainter::gather_meshes(Job& job) {
     job.bounds_mm.lowest = glm::min(job.bounds_mm.lowest, bounds.lowest);
     job.bounds_mm.highest = glm::max(job.bounds_mm.highest, bounds.highest);
   }
-  job.lights = lights_of(scene, job.bounds_mm);
+  list_lights(scene, job.bounds_mm, job.lights);
   job.ambient = ambient_of(scene);
 }
 
 void ScenePainter::update_shadows(Job& job) {
   const bool refined = job.request.settings.technique == Technique::kIntegral;
-  std::vector<uint64_t> reads;
-  std::vector<ShadowCaster> casters;
+  places_.clear();
+  casters_.clear();
   for (const DrawnMesh& drawn : job.meshes) {
     const MeshState& state = *drawn.state;
-    reads.push_back(refined ? state.refined.generation() : state.placed.generation());
+    places_.push_back(refined ? state.refined.generation() : state.placed.generation());
     const geometry::MeshTopology& topology = refined ? *state.refined.topology() : *drawn.mesh->topology;
     const geometry::PlacedShape& shape = refined ? state.refined.shape() : state.placed.shape();
-    casters.push_back({topology.triangles, shape.positions_mm, topology.encloses_volume, shape.flipped});
+    casters_.push_back({topology.triangles, shape.positions_mm, topology.encloses_volume, shape.flipped});
   }
-  if (!shadow_reads_.renew(std::move(reads))) return;
-  shadows_.set_casters(std::move(casters), job.bounds_mm);
+  if (!shadow_reads_.renew(places_)) return;
+  shadows_.set_casters(casters_, job.bounds_mm);
   ++shadows_generation_;
 }
 
@@ -104,21 +104,23 @@ void ScenePainter::update_surface(const DrawnMesh& drawn, const RefinedMesh* ref
       job.clock);
 }
 
-AtlasKey ScenePainter::atlas_key(const DrawnMesh& drawn, const Job& job) {
-  return {drawn.state->placed.generation(), job.lights, drawn.material.refractive_index,
-          job.request.settings.paper.face_size_px, job.variant.lit ? drawn.state->vertex_light.generation() : 0};
+const AtlasKey& ScenePainter::atlas_key(const DrawnMesh& drawn, const Job& job) {
+  atlas_key_ = {drawn.state->placed.generation(), std::move(atlas_key_.lights), drawn.material.refractive_index,
+                job.request.settings.paper.face_size_px, job.variant.lit ? drawn.state->vertex_light.generation() : 0};
+  atlas_key_.lights = job.lights;
+  return atlas_key_;
 }
 
 void ScenePainter::update_atlas(const DrawnMesh& drawn, Job& job) {
   const uint32_t face_size_px = job.request.settings.paper.face_size_px;
-  AtlasKey key = atlas_key(drawn, job);
+  const AtlasKey& key = atlas_key(drawn, job);
   if (drawn.state->atlas.has_value() && drawn.state->atlas->key() == key) {
     job.clock.sleep("atlas");
     return;
   }
   job.clock.run("atlas", [&] {
     const BoxUniforms box = fit_box(drawn.state->placed.bounds_mm(), face_size_px);
-    drawn.state->atlas.emplace(std::move(key), box);
+    drawn.state->atlas.emplace(key, box);
     shading_.bind(box);
     shading_.bind(material_uniforms(drawn.material));
     // The outermost surface of a closed body faces outwards.
@@ -199,7 +201,7 @@ absl::Status ScenePainter::update(Job& job) {
     if (absl::Status refined = refine(job); !refined.ok()) return refined;
   }
   if (shadowed || job.ambient.occluded) update_shadows(job);
-  shading_.bind(std::span<const LightStorage>(job.lights));
+  if (!job.native) shading_.bind(std::span<const LightStorage>(job.lights));
   for (const DrawnMesh& drawn : job.meshes) {
     if (absl::Status status = check_cancelled(job); !status.ok()) return status;
     if (absl::Status status = update_mesh(drawn, shadowed, job); !status.ok()) return status;

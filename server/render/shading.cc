@@ -64,12 +64,14 @@ absl::Status Shading::load_program(Pass pass, Variant variant) {
 }
 
 absl::Status Shading::prepare(Technique technique, Variant variant) {
-  std::vector<Pass> passes;
+  std::span<const Pass> passes;
   // Extra channels and coats of the integral ask for the G-buffer.
-  if (technique == Technique::kIntegral) passes = {kIntegral, kGbuffer};
-  if (technique == Technique::kReference) passes = {kGbuffer};
-  if (technique == Technique::kPaper) passes = {kAtlas, kGbuffer, kPaper};
-  if (technique == Technique::kLambert) passes = {kGbuffer, kLambert};
+  static constexpr Pass kOfIntegral[] = {kIntegral, kGbuffer}, kOfReference[] = {kGbuffer};
+  static constexpr Pass kOfPaper[] = {kAtlas, kGbuffer, kPaper}, kOfLambert[] = {kGbuffer, kLambert};
+  if (technique == Technique::kIntegral) passes = kOfIntegral;
+  if (technique == Technique::kReference) passes = kOfReference;
+  if (technique == Technique::kPaper) passes = kOfPaper;
+  if (technique == Technique::kLambert) passes = kOfLambert;
   for (const Pass pass : passes) {
     if (absl::Status loaded = load_program(pass, variant); !loaded.ok()) return loaded;
   }

@@ -121,8 +121,8 @@ struct ShadowScene::Embree {
 ShadowScene::ShadowScene() : embree_(std::make_unique<Embree>()) {}
 ShadowScene::~ShadowScene() = default;
 
-void ShadowScene::set_casters(std::vector<ShadowCaster> casters, const geometry::Bounds& bounds_mm) {
-  casters_ = std::move(casters);
+void ShadowScene::set_casters(std::span<const ShadowCaster> casters, const geometry::Bounds& bounds_mm) {
+  casters_.assign(casters.begin(), casters.end());
   bounds_mm_ = bounds_mm;
   rays_ready_ = false;
 }

@@ -22,7 +22,7 @@ class ShadowScene {
   ShadowScene& operator=(const ShadowScene&) = delete;
 
   /// Takes the casters as they are now, by reference: they must stay until the next call.
-  void set_casters(std::vector<ShadowCaster> casters, const geometry::Bounds& bounds_mm);
+  void set_casters(std::span<const ShadowCaster> casters, const geometry::Bounds& bounds_mm);
 
   /// The visible share of `light`, 0..1, at the centroid of each of `triangles`, seen from in front. Hard for a light
   /// without a radius; else the share of 16 points of its disc.

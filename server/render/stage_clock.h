@@ -13,6 +13,10 @@ namespace diaphane::render {
 /// Adds up the time of a frame's stages, in the order in which they were first named. One thread.
 class StageClock {
  public:
+  StageClock() = default;
+  /// Keeps its list in the memory of `spare`.
+  explicit StageClock(std::vector<StageTime> spare) : stages_(std::move(spare)) { stages_.clear(); }
+
   /// Runs `work` and books its time on `stage`.
   template <typename Work>
   auto run(std::string_view stage, Work&& work) {

@@ -33,9 +33,12 @@ void SurfaceLight::update(const Inputs& inputs, StageClock& clock) {
         [&](std::span<glm::vec3> normals) { integral_->update_positions(shape.positions_mm, normals); });
   });
   stage("refit", moved, [&] { integral_->refit_geometry(); });
-  std::vector<LightStorage> lights(inputs.lights.begin(), inputs.lights.end());
-  const bool relit =
-      light_reads_.renew({placed, std::move(lights), inputs.ambient, refractive_index, inputs.shadows_generation});
+  std::get<1>(light_key_).assign(inputs.lights.begin(), inputs.lights.end());
+  std::get<0>(light_key_) = placed;
+  std::get<2>(light_key_) = inputs.ambient;
+  std::get<3>(light_key_) = refractive_index;
+  std::get<4>(light_key_) = inputs.shadows_generation;
+  const bool relit = light_reads_.renew(light_key_);
   const bool occluded = inputs.occluders != nullptr && inputs.ambient.light != nullptr;
   const std::vector<glm::uvec3>& triangles = integral_->topology().triangles;
   if (occluded) {

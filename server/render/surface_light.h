@@ -66,7 +66,9 @@ class SurfaceLight {
   // What each stage reads, in the order in which they run.
   Memo<uint64_t> refit_reads_;  // shape
   // shape, lights, what is around, η, shadows
-  Memo<std::tuple<uint64_t, std::vector<LightStorage>, Ambient, float, uint64_t>> light_reads_;
+  using LightKey = std::tuple<uint64_t, std::vector<LightStorage>, Ambient, float, uint64_t>;
+  Memo<LightKey> light_reads_;
+  LightKey light_key_;                                    // of this frame, in the memory of the last
   Memo<std::tuple<uint64_t, uint64_t>> flux_reads_;       // shape, irradiance
   Memo<std::tuple<uint64_t, uint64_t>> occlusion_reads_;  // shape, occluders
   Memo<optics::Coefficients> material_reads_;

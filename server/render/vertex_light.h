@@ -47,13 +47,21 @@ class VertexLight {
   /// Takes from what is around what bodies hide.
   void occlude(const Inputs& inputs);
   /// Adds what one light gives, and returns the share of its power that shadows leave.
-  float add(const LightStorage& light, const Inputs& inputs, std::span<const float> areas_mm2);
+  float add(const LightStorage& light, const Inputs& inputs);
 
+  struct Arrival {
+    glm::vec3 entering;
+    float seen;
+  };
+  std::vector<Arrival> arrivals_;
+  std::vector<float> areas_mm2_;
   AmbientOcclusion occlusion_;
   std::vector<glm::vec3> irradiance_;
   std::vector<LightStorage> lights_;
   // shape, lights, what is around, η, shadows
-  Memo<std::tuple<uint64_t, std::vector<LightStorage>, Ambient, float, uint64_t>> reads_;
+  using Key = std::tuple<uint64_t, std::vector<LightStorage>, Ambient, float, uint64_t>;
+  Memo<Key> reads_;
+  Key key_;  // of this frame, in the memory of the last
   uint64_t generation_ = 0;
 };
 

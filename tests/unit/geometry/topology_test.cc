@@ -23,7 +23,8 @@ PlacedShape place(const MeshTopology& topology, const MeshShape& shape, const gl
                   double scale) {
   PlacedShape placed;
   place_positions(shape, scene_from_mesh, scale, placed);
-  place_normals(topology, shape, scene_from_mesh, placed);
+  std::vector<glm::vec3> scratch;
+  place_normals(topology, shape, scene_from_mesh, placed, scratch);
   return placed;
 }
 

@@ -23,7 +23,8 @@ LightStorage point_light(const glm::vec3& position_mm) {
 struct Body {
   explicit Body(const Mesh& mesh, bool encloses_volume = true) : triangles(mesh.triangles), shape(shape_of(mesh)) {
     bounds = geometry::bounds_of(shape.positions_mm);
-    shadows.set_casters({{triangles, shape.positions_mm, encloses_volume, false}}, bounds);
+    const ShadowCaster caster{triangles, shape.positions_mm, encloses_volume, false};
+    shadows.set_casters({&caster, 1}, bounds);
   }
   std::vector<float> visibility(const LightStorage& light) {
     std::vector<float> share(triangles.size());
@@ -87,7 +88,8 @@ TEST(ShadowMap, MirroredCastersShadeTheSame) {
   geometry::PlacedShape shape = shape_of(mirrored);
   shape.flipped = true;
   ShadowScene shadows;
-  shadows.set_casters({{mirrored.triangles, shape.positions_mm, true, true}}, geometry::bounds_of(shape.positions_mm));
+  const ShadowCaster caster{mirrored.triangles, shape.positions_mm, true, true};
+  shadows.set_casters({&caster, 1}, geometry::bounds_of(shape.positions_mm));
   std::vector<float> share(mirrored.triangles.size());
   shadows.visibility(point_light({-25, 8, 6}), mirrored.triangles, shape, share);
   EXPECT_NEAR(mean(share), mean(straight.visibility(point_light({25, 8, 6}))), 0.01);

@@ -10,6 +10,7 @@
 
 #include "CLI/CLI.hpp"
 #include "diffusion/simd_level.h"
+#include "fmt/format.h"
 #include "render/gl_renderer.h"
 #include "tests/bench/timed_scenes.h"
 
@@ -64,7 +65,7 @@ std::vector<scene::Light> lamps(uint32_t count) {
     const float angle = 2.4f * static_cast<float>(i);
     const glm::vec3 place(45 * std::cos(angle), 20 * std::sin(1.7f * angle), 45 * std::sin(angle));
     lights.push_back(
-        {"l" + std::to_string(i), scene::PointLight{place, glm::vec3(12000.0f / static_cast<float>(count))}});
+        {fmt::format("l{}", i), scene::PointLight{place, glm::vec3(12000.0f / static_cast<float>(count))}});
   }
   return lights;
 }
@@ -87,7 +88,7 @@ Cost cost_of(render::FrameRenderer& renderer, const std::string& technique, cons
   for (uint32_t i = 0; i < size.scenes; ++i) {
     scenes.push_back(bench::make_scene(mesh, "marble", lamps(size.lights)));
     auto body = std::make_shared<scene::Mesh>(*scenes.back()->meshes.front());
-    body->name += std::to_string(i);
+    body->name = fmt::format("mesh{}", i);
     scenes.back()->meshes.front() = body;
   }
   render::FrameRequest request;

@@ -44,7 +44,7 @@ CubeAtlas::CubeAtlas(AtlasKey key, const BoxUniforms& box) : key_(std::move(key)
   gl::storage_2d(depth_, GL_DEPTH_COMPONENT32F, key_.face_size_px, key_.face_size_px);
 }
 
-void CubeAtlas::render(const gl::Program& program, const std::function<void(bool mirrored)>& draw_mesh) {
+void CubeAtlas::render(const gl::Program& program, absl::FunctionRef<void(bool mirrored)> draw_mesh) {
   const auto size = static_cast<GLsizei>(key_.face_size_px);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_.id(), 0);

@@ -1,9 +1,9 @@
 // The paper's cube map: irradiance and surface of a mesh, seen from the six faces of its box.
 #pragma once
 
-#include <functional>
 #include <vector>
 
+#include "absl/functional/function_ref.h"
 #include "geometry/shape.h"
 #include "gl/objects.h"
 #include "gl/program.h"
@@ -29,10 +29,15 @@ struct AtlasKey {
 class CubeAtlas {
  public:
   CubeAtlas(AtlasKey key, const BoxUniforms& box);
+  /// Stands for other texels of as many from now on, which render() is to make.
+  void renew(const AtlasKey& key, const BoxUniforms& box) {
+    key_ = key;
+    box_ = box;
+  }
 
   /// Pass 1: `draw_mesh` six times with `program` (atlas.vert + atlas.frag), MaterialUniforms, BoxUniforms and the
   /// lights bound; it is told where the projection turns left into right.
-  void render(const gl::Program& program, const std::function<void(bool mirrored)>& draw_mesh);
+  void render(const gl::Program& program, absl::FunctionRef<void(bool mirrored)> draw_mesh);
 
   const AtlasKey& key() const { return key_; }
   const BoxUniforms& box() const { return box_; }

@@ -120,7 +120,12 @@ void ScenePainter::update_atlas(const DrawnMesh& drawn, Job& job) {
   }
   job.clock.run("atlas", [&] {
     const BoxUniforms box = fit_box(drawn.state->placed.bounds_mm(), face_size_px);
-    drawn.state->atlas.emplace(key, box);
+    std::optional<CubeAtlas>& atlas = drawn.state->atlas;
+    if (atlas.has_value() && atlas->key().face_size_px == key.face_size_px) {
+      atlas->renew(key, box);
+    } else {
+      atlas.emplace(key, box);
+    }
     shading_.bind(box);
     shading_.bind(material_uniforms(drawn.material));
     // The outermost surface of a closed body faces outwards.

@@ -22,11 +22,13 @@ using Clock = std::chrono::steady_clock;
 using Bytes = std::vector<unsigned char>;
 
 constexpr double kRate = 30;
+constexpr float kReach = 0.1f;  // of a wave, in heights of the body
 
 struct Settings {
   std::vector<std::string> meshes = {"bunny_closed_72k.ply", "buddha_381k.ply"};
   std::string folder = "../shared/data/meshes";
   int frames = 12;
+  bool spatial_order = false;
   std::string json_path;
 };
 
@@ -35,12 +37,24 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Leaning to and fro about the lowest point.
-std::vector<Vec3> leaning(const MeshData& mesh, const Bounds& bounds, int frame) {
-  const float lean = 0.1f * std::sin(0.3f * static_cast<float>(frame));
-  std::vector<Vec3> positions = mesh.positions;
-  for (Vec3& p : positions) p.x += lean * (p.y - bounds.lowest.y);
-  return positions;
+/// A wave through all of the body, along every axis; lengths in heights of it, `frame` at kRate.
+std::vector<Vec3> displacements_of(const MeshData& mesh, const Bounds& bounds, int frame) {
+  const float height = bounds.highest.y - bounds.lowest.y;
+  const float reach = kReach * height, time = 0.1f * static_cast<float>(frame);
+  std::vector<Vec3> displacements;
+  displacements.reserve(mesh.positions.size());
+  for (const Vec3& p : mesh.positions) {
+    const float x = p.x / height, y = p.y / height, z = p.z / height;
+    displacements.push_back({reach * std::sin(time + 2.1f * y + 0.7f * z), reach * std::sin(1.3f * time + 2.9f * x),
+                             reach * std::sin(0.8f * time + 2.6f * y - 1.1f * x)});
+  }
+  return displacements;
+}
+
+void sort_in_space(std::vector<Vec3>& positions) {
+  std::vector<unsigned int> remap(positions.size());
+  meshopt_spatialSortRemap(remap.data(), &positions.front().x, positions.size(), sizeof(Vec3));
+  meshopt_remapVertexBuffer(positions.data(), positions.data(), positions.size(), sizeof(Vec3), remap.data());
 }
 
 /// Four numbers a vertex, the last 0.
@@ -88,30 +102,38 @@ absl::Status run(const Settings& settings) {
   for (const std::string& name : settings.meshes) {
     const absl::StatusOr<LoadedFile> file = read_mesh_file(settings.folder + "/" + name);
     if (!file.ok()) return file.status();
-    const MeshData& mesh = file->meshes.front();
+    MeshData mesh = file->meshes.front();
+    if (settings.spatial_order) sort_in_space(mesh.positions);
     const Bounds bounds = *bounds_of(file->meshes);
-    Bounds box = bounds;  // of all poses
-    const float reach = 0.1f * (bounds.highest.y - bounds.lowest.y);
-    box.lowest.x -= reach;
-    box.highest.x += reach;
+    const float reach = kReach * (bounds.highest.y - bounds.lowest.y);
+    const Vec3 size = {bounds.highest.x - bounds.lowest.x + 2 * reach, bounds.highest.y - bounds.lowest.y + 2 * reach,
+                       bounds.highest.z - bounds.lowest.z + 2 * reach};
+    const Bounds of_poses = {{bounds.lowest.x - reach, bounds.lowest.y - reach, bounds.lowest.z - reach},
+                             {bounds.highest.x + reach, bounds.highest.y + reach, bounds.highest.z + reach}};
+    const Bounds of_displacements = {{-reach, -reach, -reach}, {reach, reach, reach}};
+    // As long as the box of poses, so that both have the same step.
+    const Bounds same_step = {{-size.x / 2, -size.y / 2, -size.z / 2}, {size.x / 2, size.y / 2, size.z / 2}};
     const size_t count = mesh.positions.size();
     Form forms[] = {{"float32"},
                     {"float32, compressed"},
                     {"16 bit"},
                     {"16 bit, compressed"},
-                    {"displacements, 16 bit, compressed"}};
+                    {"displacements, 16 bit, compressed"},
+                    {"the same in steps of the third"}};
     for (int i = 0; i < settings.frames; ++i) {
-      const std::vector<Vec3> positions = leaning(mesh, bounds, i);
+      const std::vector<Vec3> displacements = displacements_of(mesh, bounds, i);
+      std::vector<Vec3> positions = mesh.positions;
+      for (size_t v = 0; v < count; ++v) {
+        positions[v].x += displacements[v].x;
+        positions[v].y += displacements[v].y;
+        positions[v].z += displacements[v].z;
+      }
       forms[0].bytes += 12.0 * static_cast<double>(count);
       forms[2].bytes += 6.0 * static_cast<double>(count);
       code(positions, count, &forms[1]);
-      code(quantized(positions, box), count, &forms[3]);
-      std::vector<Vec3> displacements(count);
-      for (size_t v = 0; v < count; ++v) {
-        const Vec3 &p = positions[v], &rest = mesh.positions[v];
-        displacements[v] = {p.x - rest.x, p.y - rest.y, p.z - rest.z};
-      }
-      code(quantized(displacements, {{-reach, -reach, -reach}, {reach, reach, reach}}), count, &forms[4]);
+      code(quantized(positions, of_poses), count, &forms[3]);
+      code(quantized(displacements, of_displacements), count, &forms[4]);
+      code(quantized(displacements, same_step), count, &forms[5]);
     }
     for (const Form& form : forms) {
       const double bytes = form.bytes / settings.frames;
@@ -139,6 +161,7 @@ int main(int argc, char** argv) {
   app.add_option("--meshes", settings.meshes, "files of --folder")->delimiter(',');
   app.add_option("--folder", settings.folder, "with mesh files");
   app.add_option("--frames", settings.frames)->check(CLI::Range(1, 10000));
+  app.add_flag("--spatial-order", settings.spatial_order, "vertices sorted by meshoptimizer, neighbours together");
   app.add_option("--json", settings.json_path, "file for the table");
   CLI11_PARSE(app, argc, argv);
   const absl::Status status = diaphane::run(settings);

@@ -112,8 +112,8 @@ class Deformer {
   /// The same of some: vertex indices[i] to positions[i].
   absl::Status set_quantized_positions(const MeshHandle& mesh, std::span<const uint32_t> indices,
                                        std::span<const Vec3> positions, const Vec3& lowest, const Vec3& highest);
-  /// The same of all, as displacements from the uploaded positions: compressed, a quarter of the bytes where a body
-  /// deforms smoothly.
+  /// The same of all, as displacements from the uploaded positions: where a body deforms smoothly they compress better
+  /// than positions, in a box that is no smaller than theirs (docs/streaming.md).
   absl::Status set_quantized_displacements(const MeshHandle& mesh, std::span<const Vec3> displacements,
                                            const Vec3& lowest, const Vec3& highest);
   /// The uploaded positions plus, of each of MeshData::morph_targets, the displacements times a weight.

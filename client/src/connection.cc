@@ -47,11 +47,11 @@ std::shared_ptr<grpc::Channel> make_channel(const std::string& address) {
   return grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), channel_arguments());
 }
 
-Connection::Connection(const std::string& address, ClientOptions options) : options_(std::move(options)) {
-  const auto channel = make_channel(address);
-  scene_service_ = v1::SceneService::NewStub(channel);
-  render_service_ = v1::RenderService::NewStub(channel);
-  server_service_ = v1::ServerService::NewStub(channel);
+Connection::Connection(const std::string& address, ClientOptions options)
+    : options_(std::move(options)), channel_(make_channel(address)) {
+  scene_service_ = v1::SceneService::NewStub(channel_);
+  render_service_ = v1::RenderService::NewStub(channel_);
+  server_service_ = v1::ServerService::NewStub(channel_);
 }
 
 absl::Status Connection::run(const std::function<grpc::Status(grpc::ClientContext&)>& attempt) const {

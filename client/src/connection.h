@@ -31,6 +31,7 @@ class Connection {
 
   Connection(const std::string& address, ClientOptions options);
 
+  const std::shared_ptr<grpc::Channel>& channel() const { return channel_; }
   const std::unique_ptr<SceneStub>& scene_service() const { return scene_service_; }
   const std::unique_ptr<RenderStub>& render_service() const { return render_service_; }
   const std::unique_ptr<ServerStub>& server_service() const { return server_service_; }
@@ -56,6 +57,7 @@ class Connection {
 
  private:
   ClientOptions options_;
+  std::shared_ptr<grpc::Channel> channel_;
   std::unique_ptr<SceneStub> scene_service_;
   std::unique_ptr<RenderStub> render_service_;
   std::unique_ptr<ServerStub> server_service_;

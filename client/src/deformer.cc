@@ -1,11 +1,14 @@
 #include <deque>
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "connection.h"
 #include "convert.h"
 #include "diaphane/scene.h"
 #include "diaphane/stream.h"
+#include "edit_call.h"
 #include "fmt/format.h"
 #include "meshoptimizer.h"
 #include "quantize.h"
@@ -40,39 +43,36 @@ class Deformer::Impl {
         reopening_(connection_->options()),
         scene_(std::move(scene)) {}
 
-  ~Impl() {
-    if (!stream_) return;
-    context_->TryCancel();
-    stream_->Finish();
-  }
-
-  /// `values`, `each` bytes an element, as they travel in `positions`.
-  std::string pack(const void* values, size_t count, size_t each, v1::VertexPositions& positions) const {
-    if (!options_.compress || count == 0) return {static_cast<const char*>(values), count * each};
-    meshopt_encodeVertexVersion(0);
-    std::string bytes(meshopt_encodeVertexBufferBound(count, each), '\0');
-    bytes.resize(
-        meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(), values, count, each));
-    positions.set_meshopt_count(static_cast<uint32_t>(count));
-    return bytes;
-  }
-
   absl::Status add_floats(v1::SceneChange change, std::span<const Vec3> values) {
     v1::VertexPositions& positions = *change.mutable_positions();
-    positions.set_float32(pack(values.data(), values.size(), sizeof(Vec3), positions));
+    std::string bytes = std::exchange(spare_, {});
+    if (options_.compress && !values.empty()) {
+      compress(values.data(), values.size(), sizeof(Vec3), bytes, positions);
+    } else {
+      bytes.assign(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+    }
+    positions.set_float32(std::move(bytes));
     return add(std::move(change));
   }
   absl::Status add_quantized(v1::SceneChange change, std::span<const Vec3> values, const Vec3& lowest,
                              const Vec3& highest) {
-    // The codec's elements are of four bytes or a multiple.
-    const absl::StatusOr<std::vector<uint16_t>> steps =
-        internal::steps_in_box(values, lowest, highest, options_.compress ? 4 : 3);
-    if (!steps.ok()) return steps.status();
     v1::VertexPositions& positions = *change.mutable_positions();
+    std::string bytes = std::exchange(spare_, {});
+    const bool compressed = options_.compress && !values.empty();
+    // The codec's elements are of four bytes or a multiple.
+    const size_t width = compressed ? 4 : 3;
+    std::string& steps = compressed ? steps_ : bytes;
+    steps.resize(width * sizeof(uint16_t) * values.size());
+    if (absl::Status status =
+            internal::steps_in_box(values, lowest, highest, width, reinterpret_cast<uint16_t*>(steps.data()));
+        !status.ok()) {
+      return status;
+    }
+    if (compressed) compress(steps.data(), values.size(), width * sizeof(uint16_t), bytes, positions);
     v1::QuantizedPositions& quantized = *positions.mutable_quantized();
     *quantized.mutable_lowest() = to_proto(lowest);
     *quantized.mutable_highest() = to_proto(highest);
-    quantized.set_uint16(pack(steps->data(), values.size(), options_.compress ? 8 : 6, positions));
+    quantized.set_uint16(std::move(bytes));
     return add(std::move(change));
   }
 
@@ -101,17 +101,27 @@ class Deformer::Impl {
  private:
   static constexpr size_t kMostWaiting = 32;
 
+  /// `values`, `each` bytes an element, as `bytes` that `positions` carries.
+  static void compress(const void* values, size_t count, size_t each, std::string& bytes,
+                       v1::VertexPositions& positions) {
+    meshopt_encodeVertexVersion(0);
+    bytes.resize(meshopt_encodeVertexBufferBound(count, each));
+    bytes.resize(
+        meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(), values, count, each));
+    positions.set_meshopt_count(static_cast<uint32_t>(count));
+  }
+
   absl::Status send(v1::SceneEdit edit) {
     if (!failed_.ok()) return failed_;
     edit.set_sequence(++sequence_);
-    v1::EditSceneRequest request;
-    *request.mutable_edit() = std::move(edit);
+    auto request = std::make_shared<v1::EditSceneRequest>();
+    *request->mutable_edit() = std::move(edit);
     waiting_.push_back(std::move(request));
-    // What is lost with a stream that breaks is written again to the next.
-    if (stream_ == nullptr) {
+    // What is lost with a call that breaks is written again to the next.
+    if (!call_.has_value()) {
       open();
     } else {
-      stream_->Write(waiting_.back());
+      call_->write(waiting_.back());
     }
     return waiting_.size() < kMostWaiting ? absl::OkStatus() : wait_until(kMostWaiting / 2);
   }
@@ -121,15 +131,15 @@ class Deformer::Impl {
     if (!failed_.ok()) return failed_;
     while (waiting_.size() > most) {
       v1::EditSceneResponse response;
-      if (stream_ == nullptr) open();
-      if (stream_->Read(&response)) {
+      if (!call_.has_value()) open();
+      if (call_->read(&response)) {
         reopening_.succeeded();
         revision_ = response.scene_revision();
-        while (!waiting_.empty() && waiting_.front().edit().sequence() <= response.applied()) waiting_.pop_front();
+        while (!waiting_.empty() && waiting_.front()->edit().sequence() <= response.applied()) forget_first();
         continue;
       }
-      const absl::Status ended = internal::to_absl(stream_->Finish());
-      stream_.reset();
+      const absl::Status ended = call_->finish();
+      call_.reset();
       failed_ = reopening_.wait_after(ended);
       if (!failed_.ok()) return failed_;
     }
@@ -138,13 +148,24 @@ class Deformer::Impl {
 
   /// And writes all that waits.
   void open() {
-    context_.emplace();
-    stream_ = connection_->scene_service()->EditScene(&*context_);
-    v1::EditSceneRequest request;
-    request.mutable_opening()->set_scene(scene_);
-    request.mutable_opening()->set_editor_id(id_);
-    stream_->Write(request);
-    for (const v1::EditSceneRequest& waiting : waiting_) stream_->Write(waiting);
+    call_.emplace(connection_->channel());
+    auto request = std::make_shared<v1::EditSceneRequest>();
+    request->mutable_opening()->set_scene(scene_);
+    request->mutable_opening()->set_editor_id(id_);
+    call_->write(request);
+    for (const auto& waiting : waiting_) call_->write(waiting);
+  }
+
+  /// Keeps the memory of its positions for the next, once nothing reads it any more.
+  void forget_first() {
+    const std::shared_ptr<v1::EditSceneRequest> first = std::move(waiting_.front());
+    waiting_.pop_front();
+    if (first.use_count() > 1 || first->edit().changes_size() != 1) return;
+    v1::SceneChange& change = *first->mutable_edit()->mutable_changes(0);
+    if (!change.has_positions()) return;
+    v1::VertexPositions& positions = *change.mutable_positions();
+    spare_ = std::move(positions.has_quantized() ? *positions.mutable_quantized()->mutable_uint16()
+                                                 : *positions.mutable_float32());
   }
 
   const DeformerOptions options_;
@@ -154,11 +175,12 @@ class Deformer::Impl {
   const std::string id_ = internal::new_request_id();
   uint64_t sequence_ = 0;
   uint64_t revision_ = 0;
-  std::deque<v1::EditSceneRequest> waiting_;  // sent, and not known to be applied
+  std::deque<std::shared_ptr<v1::EditSceneRequest>> waiting_;  // sent, and not known to be applied
+  std::string spare_;                                          // memory of one that was
+  std::string steps_;                                          // before they are compressed
   std::optional<v1::SceneEdit> group_;
   absl::Status failed_;
-  std::optional<grpc::ClientContext> context_;
-  std::unique_ptr<grpc::ClientReaderWriter<v1::EditSceneRequest, v1::EditSceneResponse>> stream_;
+  std::optional<internal::EditCall> call_;
 };
 
 Deformer::Deformer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -1,52 +1,124 @@
 #include "quantize.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 
 #include "fmt/format.h"
 
 namespace diaphane::internal {
 namespace {
 
-constexpr double kSteps = 65535;
+constexpr float kSteps = 65535;
 
 std::string text(const Vec3& v) { return fmt::format("({:g}, {:g}, {:g})", v.x, v.y, v.z); }
 
-/// One axis of the box.
-class Axis {
- public:
-  Axis(float low, float high) : low_(low), high_(high), scale_(high > low ? kSteps / (high_ - low_) : 0) {}
+// What the compilers that build this make vector instructions of.
+using Four = float __attribute__((vector_size(16)));
+using FourInts = int32_t __attribute__((vector_size(16)));
+using FourSigned = int16_t __attribute__((vector_size(8)));
+using FourShorts = uint16_t __attribute__((vector_size(8)));
 
-  // Written so that NaN fails too.
-  bool is_one() const { return high_ >= low_ && std::isfinite(high_ - low_); }
-  bool holds(float value) const { return value >= low_ && value <= high_; }
-  uint16_t step(float value) const { return static_cast<uint16_t>((value - low_) * scale_ + 0.5); }
+/// Four values at once: their axes, one after the other, fill three vectors.
+constexpr size_t kAtOnce = 4;
+using Values = std::array<Four, 3>;
+using Steps = std::array<FourShorts, 3>;
+
+Values repeated(const Vec3& v) {
+  return {Four{v.x, v.y, v.z, v.x}, Four{v.y, v.z, v.x, v.y}, Four{v.z, v.x, v.y, v.z}};
+}
+
+float steps_per_unit(float low, float high) { return high > low ? kSteps / (high - low) : 0; }
+
+class Box {
+ public:
+  Box(const Vec3& low, const Vec3& high)
+      : lowest_(repeated(low)),
+        highest_(repeated(high)),
+        scale_(
+            repeated({steps_per_unit(low.x, high.x), steps_per_unit(low.y, high.y), steps_per_unit(low.z, high.z)})) {}
+
+  const Values& lowest() const { return lowest_; }
+
+  /// `inside` becomes 0 where a value is not; then its steps mean nothing.
+  Steps steps_of(const Values& values, FourInts& inside) const {
+    Steps steps;
+    for (size_t i = 0; i < 3; ++i) {
+      // False for NaN; what is outside becomes 0, so that the conversion is defined.
+      const FourInts here = (values[i] >= lowest_[i]) & (values[i] <= highest_[i]);
+      const Four step = (values[i] - lowest_[i]) * scale_[i] + 0.5f;
+      const FourInts whole = __builtin_convertvector((Four)((FourInts)step & here), FourInts);
+      steps[i] = (FourShorts)(__builtin_convertvector(whole - 32768, FourSigned) ^ (int16_t)(-32768));
+      inside &= here;
+    }
+    return steps;
+  }
 
  private:
-  double low_, high_, scale_;
+  Values lowest_, highest_, scale_;
 };
+
+/// Written so that NaN fails too.
+bool is_box(const Vec3& low, const Vec3& high) {
+  const auto is_range = [](float l, float h) { return h >= l && std::isfinite(h - l); };
+  return is_range(low.x, high.x) && is_range(low.y, high.y) && is_range(low.z, high.z);
+}
+
+/// Three numbers of each of `count` values as four.
+void spread(const Steps& found, size_t count, uint16_t* steps) {
+  const auto* from = reinterpret_cast<const char*>(found.data());
+  for (size_t i = 0; i < count; ++i) {
+    std::memcpy(steps + 4 * i, from + 3 * sizeof(uint16_t) * i, 3 * sizeof(uint16_t));
+    steps[4 * i + 3] = 0;
+  }
+}
+
+/// Of the first that the box does not hold.
+absl::Status refusal(std::span<const Vec3> values, const Vec3& lowest, const Vec3& highest) {
+  const auto holds = [&](const Vec3& v) {
+    return v.x >= lowest.x && v.x <= highest.x && v.y >= lowest.y && v.y <= highest.y && v.z >= lowest.z &&
+           v.z <= highest.z;
+  };
+  const auto found = std::find_if_not(values.begin(), values.end(), holds);
+  return absl::InvalidArgumentError(fmt::format("positions[{}]: must be within {} and {}, got {}",
+                                                found - values.begin(), text(lowest), text(highest), text(*found)));
+}
 
 }  // namespace
 
-absl::StatusOr<std::vector<uint16_t>> steps_in_box(std::span<const Vec3> values, const Vec3& lowest,
-                                                   const Vec3& highest, size_t width) {
-  const Axis x(lowest.x, highest.x), y(lowest.y, highest.y), z(lowest.z, highest.z);
-  if (!x.is_one() || !y.is_one() || !z.is_one()) {
+absl::Status steps_in_box(std::span<const Vec3> values, const Vec3& lowest, const Vec3& highest, size_t width,
+                          uint16_t* steps) {
+  if (!is_box(lowest, highest)) {
     return absl::InvalidArgumentError(
         fmt::format("highest: must be finite and at least lowest, {}, got {}", text(lowest), text(highest)));
   }
-  std::vector<uint16_t> steps(width * values.size());
-  uint16_t* next = steps.data();
-  for (size_t i = 0; i < values.size(); ++i, next += width) {
-    const Vec3& v = values[i];
-    if (!x.holds(v.x) || !y.holds(v.y) || !z.holds(v.z)) {
-      return absl::InvalidArgumentError(
-          fmt::format("positions[{}]: must be within {} and {}, got {}", i, text(lowest), text(highest), text(v)));
+  const Box box(lowest, highest);
+  // All at once first; which one is outside is asked only then.
+  FourInts inside = {-1, -1, -1, -1};
+  const size_t whole = values.size() / kAtOnce * kAtOnce;
+  for (size_t first = 0; first < whole; first += kAtOnce) {
+    Values block;
+    std::memcpy(block.data(), &values[first], sizeof(block));
+    const Steps found = box.steps_of(block, inside);
+    if (width == 3) {
+      for (size_t i = 0; i < found.size(); ++i) std::memcpy(steps + 3 * first + 4 * i, &found[i], sizeof(found[i]));
+    } else {
+      spread(found, kAtOnce, steps + 4 * first);
     }
-    next[0] = x.step(v.x);
-    next[1] = y.step(v.y);
-    next[2] = z.step(v.z);
   }
-  return steps;
+  if (const size_t left = values.size() - whole; left > 0) {
+    Values block = box.lowest();
+    std::memcpy(block.data(), &values[whole], left * sizeof(Vec3));
+    const Steps found = box.steps_of(block, inside);
+    if (width == 3) {
+      std::memcpy(steps + 3 * whole, found.data(), left * 3 * sizeof(uint16_t));
+    } else {
+      spread(found, left, steps + 4 * whole);
+    }
+  }
+  if ((inside[0] & inside[1] & inside[2] & inside[3]) == 0) return refusal(values, lowest, highest);
+  return absl::OkStatus();
 }
 
 }  // namespace diaphane::internal

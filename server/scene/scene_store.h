@@ -69,7 +69,7 @@ struct MeshPatch {
 /// New positions of some vertices, or of all.
 struct PositionsPatch {
   std::vector<uint32_t> indices;     ///< empty: all, in order
-  std::vector<glm::vec3> positions;  ///< mesh units, one for each
+  std::vector<glm::vec3> positions;  ///< mesh units, one for each; what check_finite() lets by
   bool displacements = false;        ///< from the uploaded positions
 };
 

@@ -24,10 +24,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr const char *kFloat32 = "float32", *kQuantized = "16bit";
+
 struct Settings {
   std::vector<std::string> meshes = {"bunny_closed_72k.ply", "buddha_381k.ply"};
   std::string folder = "../shared/data/meshes";
   std::vector<std::string> sizes = {"512x512", "1280x720"};
+  std::vector<std::string> forms = {kFloat32, kQuantized};
   int frames = 60;
   std::string json_path;
 };
@@ -42,11 +45,27 @@ double quantile(std::vector<double> values, double share) {
   return values[std::min(values.size() - 1, static_cast<size_t>(share * static_cast<double>(values.size())))];
 }
 
+/// What is deformed, and how its positions travel.
+struct Body {
+  const MeshData& mesh;
+  MeshHandle handle;
+  Bounds bounds;
+  bool quantized = false;
+
+  absl::Status send(Deformer& deformer, const std::vector<Vec3>& positions) const {
+    if (!quantized) return deformer.set_positions(handle, positions);
+    const float reach = 0.1f * (bounds.highest.y - bounds.lowest.y);
+    return deformer.set_quantized_positions(handle, positions,
+                                            {bounds.lowest.x - reach, bounds.lowest.y, bounds.lowest.z},
+                                            {bounds.highest.x + reach, bounds.highest.y, bounds.highest.z});
+  }
+};
+
 /// Leaning to and fro about the lowest point.
-std::vector<Vec3> leaning(const MeshData& mesh, const Bounds& bounds, int frame) {
+std::vector<Vec3> leaning(const Body& body, int frame) {
   const float lean = 0.1f * std::sin(0.3f * static_cast<float>(frame));
-  std::vector<Vec3> positions = mesh.positions;
-  for (Vec3& p : positions) p.x += lean * (p.y - bounds.lowest.y);
+  std::vector<Vec3> positions = body.mesh.positions;
+  for (Vec3& p : positions) p.x += lean * (p.y - body.bounds.lowest.y);
   return positions;
 }
 
@@ -58,14 +77,14 @@ struct Measured {
 
 /// One edit, then the frame that shows it, then the same frame in this process, and so on: nothing waits for anything
 /// else.
-absl::Status measure_latency(const Scene& scene, const MeshHandle& body, const MeshData& mesh, const Bounds& bounds,
-                             const StreamOptions& options, bench::InProcess& in_process, int frames, Measured* out) {
+absl::Status measure_latency(const Scene& scene, const Body& body, const StreamOptions& options,
+                             bench::InProcess& in_process, int frames, Measured* out) {
   FrameStream stream = scene.stream(options);
   Deformer deformer = scene.deform();
   for (int i = -3; i < frames; ++i) {
-    const std::vector<Vec3> positions = leaning(mesh, bounds, i);
+    const std::vector<Vec3> positions = leaning(body, i);
     const Clock::time_point begin = Clock::now();
-    if (absl::Status sent = deformer.set_positions(body, positions); !sent.ok()) return sent;
+    if (absl::Status sent = body.send(deformer, positions); !sent.ok()) return sent;
     const absl::StatusOr<uint64_t> revision = deformer.flush();
     if (!revision.ok()) return revision.status();
     absl::StatusOr<StreamedFrame> frame = stream.next();
@@ -89,13 +108,12 @@ absl::Status measure_latency(const Scene& scene, const MeshHandle& body, const M
 }
 
 /// From the last of some edits to the lossless frame.
-absl::Status measure_rest(const Scene& scene, const MeshHandle& body, const MeshData& mesh, const Bounds& bounds,
-                          StreamOptions options, Measured* out) {
+absl::Status measure_rest(const Scene& scene, const Body& body, StreamOptions options, Measured* out) {
   options.view.lossless_at_rest = true;
   FrameStream stream = scene.stream(options);
   Deformer deformer = scene.deform();
   for (int i = 0; i < 5; ++i) {
-    if (absl::Status sent = deformer.set_positions(body, leaning(mesh, bounds, i)); !sent.ok()) return sent;
+    if (absl::Status sent = body.send(deformer, leaning(body, i)); !sent.ok()) return sent;
     const absl::StatusOr<uint64_t> revision = deformer.flush();
     if (!revision.ok()) return revision.status();
     const Clock::time_point begin = Clock::now();
@@ -108,16 +126,16 @@ absl::Status measure_rest(const Scene& scene, const MeshHandle& body, const Mesh
 }
 
 /// Edits as fast as the server takes them, frames as fast as they come.
-absl::Status measure_rate(const Scene& scene, const MeshHandle& body, const MeshData& mesh, const Bounds& bounds,
-                          const StreamOptions& options, int frames, Measured* out) {
+absl::Status measure_rate(const Scene& scene, const Body& body, const StreamOptions& options, int frames,
+                          Measured* out) {
   FrameStream stream = scene.stream(options);
   std::atomic<bool> done{false};
   std::thread program([&] {
     Deformer deformer = scene.deform();
     std::vector<std::vector<Vec3>> poses;
-    for (int i = 0; i < 8; ++i) poses.push_back(leaning(mesh, bounds, 3 * i));
+    for (int i = 0; i < 8; ++i) poses.push_back(leaning(body, 3 * i));
     for (size_t i = 0; !done; ++i) {
-      if (!deformer.set_positions(body, poses[i % poses.size()]).ok() || !deformer.flush().ok()) return;
+      if (!body.send(deformer, poses[i % poses.size()]).ok() || !deformer.flush().ok()) return;
     }
   });
   absl::Status status;
@@ -130,6 +148,61 @@ absl::Status measure_rate(const Scene& scene, const MeshHandle& body, const Mesh
   done = true;
   program.join();
   return status;
+}
+
+/// One row of the table: `size` is WIDTHxHEIGHT, `form` as Settings has it.
+absl::StatusOr<nlohmann::json> measure(const Client& client, render::FrameRenderer& renderer, const MeshData& mesh,
+                                       const std::string& size, const std::string& form, int frames) {
+  const Bounds bounds = *bounds_of({&mesh, 1});
+  const double millimetres_per_unit = 50 / (bounds.highest.y - bounds.lowest.y);
+  const absl::StatusOr<Scene> scene = client.create_scene({.millimetres_per_unit = millimetres_per_unit});
+  if (!scene.ok()) return scene.status();
+  const auto material = scene->add_material({"marble"});
+  const auto handle = scene->add_mesh(mesh, {.material = material.value_or(MaterialHandle{})});
+  if (!handle.ok()) return handle.status();
+  StreamOptions options;
+  options.view.size = {static_cast<uint32_t>(std::stoul(size)),
+                       static_cast<uint32_t>(std::stoul(size.substr(size.find('x') + 1)))};
+  options.view.camera = frame_camera(bounds);
+  options.view.lossless_at_rest = false;
+  const Vec3& eye = options.view.camera.eye;
+  const PointLight lamp{{eye.x + 1, eye.y + 1, eye.z}, {20000, 20000, 20000}};
+  const auto light = scene->add_light(lamp);
+  if (!light.ok()) return light.status();
+  bench::InProcess in_process(renderer, mesh, millimetres_per_unit, lamp);
+  const Body body{mesh, *handle, bounds, form == kQuantized};
+  Measured measured;
+  absl::Status status = measure_latency(*scene, body, options, in_process, frames, &measured);
+  if (status.ok()) status = measure_rest(*scene, body, options, &measured);
+  if (status.ok()) status = measure_rate(*scene, body, options, frames, &measured);
+  if (status.ok()) status = scene->remove();
+  if (!status.ok()) return status;
+  const auto p50_and_p99 = [](const std::vector<double>& values) {
+    return nlohmann::json{{"p50", quantile(values, 0.5)}, {"p99", quantile(values, 0.99)}};
+  };
+  nlohmann::json row{{"size", size},
+                     {"form", form},
+                     {"frames_per_second", measured.frames_per_second},
+                     {"latency_ms", p50_and_p99(measured.latency_ms)},
+                     {"in_process_ms", quantile(measured.in_process_ms, 0.5)},
+                     {"encode_ms", quantile(measured.encode_ms, 0.5)},
+                     {"beyond_ms", p50_and_p99(measured.overhead_ms)},
+                     {"rest_ms", quantile(measured.rest_ms, 0.5)},
+                     {"positions_bytes", (body.quantized ? 6 : 12) * mesh.positions.size()},
+                     {"stages_ms", nlohmann::json::object()}};
+  for (const auto& [stage, values] : measured.stages_ms) row["stages_ms"][stage] = quantile(values, 0.5);
+  return row;
+}
+
+void print_row(const nlohmann::json& row) {
+  const auto number = [&](const char* name) { return row[name].get<double>(); };
+  const auto text = [&](const char* name) { return row[name].get<std::string>(); };
+  std::printf("%-22s %-9s %-7s | %6.1f | %8.2f %8.2f | %8.2f | %7.2f | %7.2f %7.2f | %6.0f\n", text("mesh").c_str(),
+              text("size").c_str(), text("form").c_str(), number("frames_per_second"),
+              row["latency_ms"]["p50"].get<double>(), row["latency_ms"]["p99"].get<double>(), number("in_process_ms"),
+              number("encode_ms"), row["beyond_ms"]["p50"].get<double>(), row["beyond_ms"]["p99"].get<double>(),
+              number("rest_ms"));
+  std::fflush(stdout);
 }
 
 absl::Status run(const Settings& settings) {
@@ -148,60 +221,25 @@ absl::Status run(const Settings& settings) {
       "the\n"
       "last edit to the lossless PNG.\n",
       settings.frames);
-  std::printf("%-22s %-9s | %6s | %8s %8s | %8s | %7s | %7s %7s | %6s\n", "mesh", "size", "fps", "latency", "p99",
-              "here", "encode", "beyond", "p99", "rest");
+  std::printf("%-22s %-9s %-7s | %6s | %8s %8s | %8s | %7s | %7s %7s | %6s\n", "mesh", "size", "form", "fps", "latency",
+              "p99", "here", "encode", "beyond", "p99", "rest");
   nlohmann::json rows = nlohmann::json::array();
   for (const std::string& name : settings.meshes) {
     const absl::StatusOr<LoadedFile> file = read_mesh_file(settings.folder + "/" + name);
     if (!file.ok()) return file.status();
-    const MeshData& mesh = file->meshes.front();
-    const Bounds bounds = *bounds_of(file->meshes);
     for (const std::string& size : settings.sizes) {
-      const absl::StatusOr<Scene> scene =
-          client->create_scene({.millimetres_per_unit = 50 / (bounds.highest.y - bounds.lowest.y)});
-      if (!scene.ok()) return scene.status();
-      const auto material = scene->add_material({"marble"});
-      const auto body = scene->add_mesh(mesh, {.material = material.value_or(MaterialHandle{})});
-      if (!body.ok()) return body.status();
-      StreamOptions options;
-      options.view.size = {static_cast<uint32_t>(std::stoul(size)),
-                           static_cast<uint32_t>(std::stoul(size.substr(size.find('x') + 1)))};
-      options.view.camera = frame_camera(bounds);
-      options.view.lossless_at_rest = false;
-      const Vec3& eye = options.view.camera.eye;
-      const PointLight lamp{{eye.x + 1, eye.y + 1, eye.z}, {20000, 20000, 20000}};
-      const auto light = scene->add_light(lamp);
-      if (!light.ok()) return light.status();
-      bench::InProcess in_process(**renderer, mesh, 50 / (bounds.highest.y - bounds.lowest.y), lamp);
-      Measured measured;
-      absl::Status status =
-          measure_latency(*scene, *body, mesh, bounds, options, in_process, settings.frames, &measured);
-      if (status.ok()) status = measure_rest(*scene, *body, mesh, bounds, options, &measured);
-      if (status.ok()) status = measure_rate(*scene, *body, mesh, bounds, options, settings.frames, &measured);
-      if (!status.ok()) return status;
-      if (absl::Status removed = scene->remove(); !removed.ok()) return removed;
-      std::printf("%-22s %-9s | %6.1f | %8.2f %8.2f | %8.2f | %7.2f | %7.2f %7.2f | %6.0f\n", name.c_str(),
-                  size.c_str(), measured.frames_per_second, quantile(measured.latency_ms, 0.5),
-                  quantile(measured.latency_ms, 0.99), quantile(measured.in_process_ms, 0.5),
-                  quantile(measured.encode_ms, 0.5), quantile(measured.overhead_ms, 0.5),
-                  quantile(measured.overhead_ms, 0.99), quantile(measured.rest_ms, 0.5));
-      std::fflush(stdout);
-      nlohmann::json row{
-          {"mesh", name},
-          {"size", size},
-          {"frames_per_second", measured.frames_per_second},
-          {"latency_ms", {{"p50", quantile(measured.latency_ms, 0.5)}, {"p99", quantile(measured.latency_ms, 0.99)}}},
-          {"in_process_ms", quantile(measured.in_process_ms, 0.5)},
-          {"rest_ms", quantile(measured.rest_ms, 0.5)},
-          {"beyond_ms", {{"p50", quantile(measured.overhead_ms, 0.5)}, {"p99", quantile(measured.overhead_ms, 0.99)}}},
-          {"positions_bytes", {{"float32", 12 * mesh.positions.size()}, {"quantized", 6 * mesh.positions.size()}}},
-          {"stages_ms", nlohmann::json::object()}};
-      for (const auto& [stage, values] : measured.stages_ms) row["stages_ms"][stage] = quantile(values, 0.5);
-      rows.push_back(std::move(row));
+      for (const std::string& form : settings.forms) {
+        auto row = measure(*client, **renderer, file->meshes.front(), size, form, settings.frames);
+        if (!row.ok()) return row.status();
+        (*row)["mesh"] = name;
+        print_row(*row);
+        rows.push_back(*std::move(row));
+      }
     }
   }
   for (const nlohmann::json& row : rows) {
-    std::printf("%s %s:", row["mesh"].get<std::string>().c_str(), row["size"].get<std::string>().c_str());
+    std::printf("%s %s %s:", row["mesh"].get<std::string>().c_str(), row["size"].get<std::string>().c_str(),
+                row["form"].get<std::string>().c_str());
     for (const auto& [stage, value] : row["stages_ms"].items())
       std::printf(" %s %.2f", stage.c_str(), value.get<double>());
     std::printf("\n");
@@ -219,6 +257,9 @@ int main(int argc, char** argv) {
   app.add_option("--meshes", settings.meshes, "files of --folder")->delimiter(',');
   app.add_option("--folder", settings.folder, "with mesh files");
   app.add_option("--sizes", settings.sizes, "WIDTHxHEIGHT")->delimiter(',');
+  app.add_option("--forms", settings.forms, "of positions")
+      ->delimiter(',')
+      ->check(CLI::IsMember({diaphane::kFloat32, diaphane::kQuantized}));
   app.add_option("--frames", settings.frames)->check(CLI::Range(1, 100000));
   app.add_option("--json", settings.json_path, "file for the table");
   CLI11_PARSE(app, argc, argv);

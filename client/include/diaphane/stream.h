@@ -104,8 +104,8 @@ class Deformer {
   /// do not repeat, for counts that differ.
   absl::Status set_positions(const MeshHandle& mesh, std::span<const uint32_t> indices,
                              std::span<const Vec3> positions);
-  /// All positions in 16 bits an axis within the box from `lowest` to `highest`: half the bytes, and half a step of
-  /// (highest − lowest)/65535 lost. INVALID_ARGUMENT, which the calls after it do not repeat, for a box that is none,
+  /// All positions in 16 bits an axis within the box from `lowest` to `highest`: half the bytes, and at most 0.51 steps
+  /// of (highest − lowest)/65535 lost. INVALID_ARGUMENT, which the calls after it do not repeat, for a box that is none,
   /// or a position outside it.
   absl::Status set_quantized_positions(const MeshHandle& mesh, std::span<const Vec3> positions, const Vec3& lowest,
                                        const Vec3& highest);

@@ -4,7 +4,7 @@
 
 namespace diaphane::base {
 
-WorkerPool::WorkerPool(size_t threads, size_t max_queued) : max_queued_(max_queued) {
+WorkerPool::WorkerPool(size_t threads, size_t max_queued) : tasks_(max_queued) {
   for (size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { run(); });
 }
 
@@ -18,8 +18,8 @@ WorkerPool::~WorkerPool() {
 
 bool WorkerPool::try_submit(std::function<void()> task) {
   absl::MutexLock lock(&mutex_);
-  if (tasks_.size() >= max_queued_) return false;
-  tasks_.push_back(std::move(task));
+  if (queued_ == tasks_.size()) return false;
+  tasks_[(first_ + queued_++) % tasks_.size()] = std::move(task);
   return true;
 }
 
@@ -27,11 +27,12 @@ void WorkerPool::run() {
   for (;;) {
     std::function<void()> task;
     {
-      const auto has_work = [this]() ABSL_SHARED_LOCKS_REQUIRED(mutex_) { return stopping_ || !tasks_.empty(); };
+      const auto has_work = [this]() ABSL_SHARED_LOCKS_REQUIRED(mutex_) { return stopping_ || queued_ > 0; };
       absl::MutexLock lock(&mutex_, absl::Condition(&has_work));
-      if (tasks_.empty()) return;
-      task = std::move(tasks_.front());
-      tasks_.pop_front();
+      if (queued_ == 0) return;
+      task = std::exchange(tasks_[first_], nullptr);
+      first_ = (first_ + 1) % tasks_.size();
+      --queued_;
     }
     task();
   }

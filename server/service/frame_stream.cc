@@ -1,6 +1,7 @@
 #include "service/frame_stream.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/status.h"
 #include "fmt/format.h"
@@ -207,6 +208,10 @@ void FrameStream::start(Rest rest) {
     const absl::MutexLock lock(&link->mutex);
     return link->reactor != nullptr && link->reactor->choose(*flight, request, encoding);
   };
+  task.begun = [link = link_] {
+    const absl::MutexLock lock(&link->mutex);
+    if (link->reactor != nullptr) link->reactor->advance();
+  };
   task.done = [link = link_, flight](absl::StatusOr<session::EncodedFrame> frame) {
     const absl::MutexLock lock(&link->mutex);
     if (link->reactor != nullptr) link->reactor->end(flight, std::move(frame));
@@ -238,7 +243,6 @@ bool FrameStream::choose(Flight& flight, render::FrameRequest& request, encode::
   }
   if (!revisions_.empty()) revisions_.pop_front();
   flight.shown = begun_ = Shown{newest->revision, newest->view_sequence, flight.rest};
-  advance();
   return true;
 }
 
@@ -293,7 +297,7 @@ void FrameStream::encoded(absl::StatusOr<encode::H264Frame> frame, double millis
   if (!frame.ok()) return finish(frame.status());
   const FlightPtr flight = drawn_.front();
   drawn_.pop_front();
-  flight->frame->pixels = {};
+  render_thread_.recycle(std::exchange(flight->frame->pixels, {}));
   flight->frame->bytes = std::move(frame->bytes);
   flight->frame->stages.push_back({"encode", milliseconds, true});
   flight->key_frame = frame->key_frame;

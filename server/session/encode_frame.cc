@@ -18,7 +18,7 @@ absl::StatusOr<std::string> encode_pixels(const render::Frame& frame, const enco
 
 }  // namespace
 
-absl::StatusOr<EncodedFrame> encode_frame(render::Frame frame, const encode::Encoding& encoding) {
+absl::StatusOr<EncodedFrame> encode_frame(render::Frame& frame, const encode::Encoding& encoding) {
   const absl::Time start = absl::Now();
   EncodedFrame encoded;
   const bool is_video = encoding.format == encode::ImageFormat::kH264;
@@ -35,13 +35,13 @@ absl::StatusOr<EncodedFrame> encode_frame(render::Frame frame, const encode::Enc
       },
       frame.image);
   encoded.scene_revision = frame.scene_revision;
-  encoded.stages = std::move(frame.stages);
+  encoded.stages = frame.stages;
   if (is_video) {
     encoded.pixels = std::get<base::Image8>(std::move(frame.image));
   } else {
     encoded.stages.push_back({"encode", milliseconds_since(start), true});
   }
-  encoded.path = std::move(frame.path);
+  encoded.path = frame.path;
   encoded.exposure_ev = frame.exposure_ev;
   return encoded;
 }

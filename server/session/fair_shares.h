@@ -26,7 +26,8 @@ class FairShares {
       }
     }
     now_ = earliest;
-    std::erase_if(ends_, [this](const auto& entry) { return entry.second <= now_; });
+    // But not of the one that is booked next, whose entry is used again.
+    std::erase_if(ends_, [&](const auto& entry) { return entry.second <= now_ && entry.first != *waiting[chosen]; });
     return chosen;
   }
 

@@ -42,6 +42,9 @@ struct FrameTask {
   /// Where given, called on the render thread as the frame's turn comes; may change the request and the encoding.
   /// False: the frame is not wanted any more, and ends with CANCELLED. It must be quick.
   std::function<bool(render::FrameRequest&, encode::Encoding&)> latest{};
+  /// Where given, called on another thread once the renderer has begun, while the frame is drawn or later. It must not
+  /// block.
+  std::function<void()> begun{};
   /// Called exactly once, on whatever thread ends the job. It must not block.
   std::function<void(absl::StatusOr<EncodedFrame>)> done;
 };
@@ -76,6 +79,9 @@ class FrameJob {
                                                                               : render::PixelFormat::kSrgb8;
     return true;
   }
+
+  bool tells_begun() const { return task_.begun != nullptr; }
+  void tell_begun() const { task_.begun(); }
 
   /// Once set, stays set; the renderer stops when it sees it.
   const std::atomic<bool>& cancelled() const { return cancelled_; }

@@ -12,6 +12,14 @@
 namespace diaphane::session {
 namespace {
 
+// Of one frame that is kept for a later one: a picture of 4096 pixels a side, or as few floats.
+constexpr size_t kMostSpentBytes = size_t{64} << 20;
+
+size_t pixel_bytes(const render::Frame& frame) {
+  if (const auto* image = std::get_if<base::Image8>(&frame.image)) return image->rgba.capacity();
+  return std::get<base::ImageF>(frame.image).values.capacity() * sizeof(float);
+}
+
 // What `make` returns; what it throws, as a status: a frame too big for the machine costs that frame, not the server.
 template <typename Make>
 auto without_exceptions(const Make& make) -> decltype(make()) {
@@ -29,7 +37,15 @@ auto without_exceptions(const Make& make) -> decltype(make()) {
 RenderThread::RenderThread(const RenderThreadOptions& options)
     : options_(options),
       // Takes every frame: next_job() holds the renderer back before the queue is full.
-      encoders_(std::make_unique<base::WorkerPool>(options.encode_threads, options.max_encoding_frames)) {}
+      encoders_(std::make_unique<base::WorkerPool>(options.encode_threads, options.max_encoding_frames)) {
+  // So that frames which overlap more than those before them allocate nothing either.
+  absl::MutexLock lock(&mutex_);
+  const size_t most = most_at_once();
+  started_.reserve(most);
+  begun_.reserve(most);
+  drawn_.reserve(most);
+  spent_.reserve(most);
+}
 
 absl::StatusOr<std::unique_ptr<RenderThread>> RenderThread::start(const RenderThreadOptions& options,
                                                                   const RendererFactory& make_renderer) {
@@ -43,7 +59,7 @@ absl::StatusOr<std::unique_ptr<RenderThread>> RenderThread::start(const RenderTh
     made.set_value(renderer.status());
     if (renderer.ok()) self->run(**renderer);
   });
-  self->deadline_thread_ = std::thread([self = self.get()] { self->watch_deadlines(); });
+  self->watching_thread_ = std::thread([self = self.get()] { self->watch(); });
   if (absl::Status status = result.get(); !status.ok()) return status;
   return self;
 }
@@ -94,21 +110,43 @@ void RenderThread::stop(absl::Time deadline) {
     job->finish(absl::UnavailableError("the server is stopping"));
   }
   if (render_thread_.joinable()) render_thread_.join();
-  if (deadline_thread_.joinable()) deadline_thread_.join();
+  if (watching_thread_.joinable()) watching_thread_.join();
   encoders_.reset();
 }
 
 void RenderThread::run(render::FrameRenderer& renderer) {
-  while (const JobPtr job = next_job()) draw(renderer, job);
+  while (const JobPtr job = next_job()) {
+    recycle_spent(renderer);
+    draw(renderer, job);
+  }
+}
+
+void RenderThread::recycle(base::Image8 pixels) {
+  render::Frame frame;
+  frame.image = std::move(pixels);
+  absl::MutexLock lock(&mutex_);
+  keep(std::move(frame));
+}
+
+void RenderThread::keep(render::Frame frame) {
+  const size_t bytes = pixel_bytes(frame);
+  if (bytes == 0 || bytes > kMostSpentBytes || spent_.size() >= options_.max_encoding_frames) return;
+  spent_.push_back(std::move(frame));
+}
+
+void RenderThread::recycle_spent(render::FrameRenderer& renderer) {
+  absl::MutexLock lock(&mutex_);
+  for (render::Frame& frame : spent_) renderer.recycle(std::move(frame));
+  spent_.clear();
 }
 
 RenderThread::JobPtr RenderThread::next_job() {
   absl::MutexLock lock(&mutex_);
   while (!quit_ && (queued_.empty() || encoding_ >= options_.max_encoding_frames)) changed_.Wait(&mutex_);
   if (quit_) return nullptr;
-  std::vector<const std::string*> scenes;
-  for (const JobPtr& waiting : queued_) scenes.push_back(&waiting->scene());
-  const auto chosen = queued_.begin() + static_cast<ptrdiff_t>(shares_.choose(scenes));
+  waiting_scenes_.clear();
+  for (const JobPtr& waiting : queued_) waiting_scenes_.push_back(&waiting->scene());
+  const auto chosen = queued_.begin() + static_cast<ptrdiff_t>(shares_.choose(waiting_scenes_));
   JobPtr job = *chosen;
   queued_.erase(chosen);
   job->begin();
@@ -120,6 +158,11 @@ RenderThread::JobPtr RenderThread::next_job() {
 void RenderThread::draw(render::FrameRenderer& renderer, const JobPtr& job) {
   const double queued_ms = milliseconds_since(job->submitted());
   if (!job->choose()) return end(job, absl::CancelledError("the frame is not wanted any more"));
+  if (job->tells_begun()) {
+    absl::MutexLock lock(&mutex_);
+    begun_.push_back(job);
+    changed_.SignalAll();
+  }
   const absl::Time begin = absl::Now();
   absl::StatusOr<render::Frame> frame =
       without_exceptions([&] { return renderer.render(job->request(), job->cancelled()); });
@@ -133,18 +176,29 @@ void RenderThread::draw(render::FrameRenderer& renderer, const JobPtr& job) {
   {
     absl::MutexLock lock(&mutex_);
     ++encoding_;
+    drawn_.push_back({job, *std::move(frame)});
   }
-  const auto drawn = std::make_shared<render::Frame>(*std::move(frame));
-  if (!encoders_->try_submit([this, job, drawn] { encode(job, std::move(*drawn)); })) encode(job, std::move(*drawn));
+  const auto task = [this] { encode_next(); };
+  if (!encoders_->try_submit(task)) task();
 }
 
-void RenderThread::encode(const JobPtr& job, render::Frame frame) {
-  if (!job->cancelled()) {
-    end(job, without_exceptions([&] { return encode_frame(std::move(frame), job->encoding()); }));
+void RenderThread::encode_next() {
+  Drawn drawn;
+  {
+    absl::MutexLock lock(&mutex_);
+    drawn = std::move(drawn_.front());
+    drawn_.erase(drawn_.begin());
   }
-  absl::MutexLock lock(&mutex_);
-  --encoding_;
-  changed_.SignalAll();
+  absl::StatusOr<EncodedFrame> encoded = absl::CancelledError("the frame is not wanted any more");
+  const bool wanted = !drawn.job->cancelled();  // else whoever cancelled it ends it
+  if (wanted) encoded = without_exceptions([&] { return encode_frame(drawn.frame, drawn.job->encoding()); });
+  {
+    absl::MutexLock lock(&mutex_);
+    --encoding_;
+    keep(std::move(drawn.frame));
+    changed_.SignalAll();
+  }
+  if (wanted) end(drawn.job, std::move(encoded));
 }
 
 void RenderThread::end(const JobPtr& job, absl::StatusOr<EncodedFrame> result) {
@@ -154,8 +208,9 @@ void RenderThread::end(const JobPtr& job, absl::StatusOr<EncodedFrame> result) {
   changed_.SignalAll();
 }
 
-void RenderThread::watch_deadlines() {
-  std::vector<JobPtr> expired;
+void RenderThread::watch() {
+  std::vector<JobPtr> expired, begun;
+  begun.reserve(most_at_once());
   for (;;) {
     {
       absl::MutexLock lock(&mutex_);
@@ -173,12 +228,15 @@ void RenderThread::watch_deadlines() {
           return true;
         });
       }
-      if (expired.empty()) {
+      std::swap(begun, begun_);
+      if (expired.empty() && begun.empty()) {
         changed_.WaitWithDeadline(&mutex_, next);
         continue;
       }
-      changed_.SignalAll();
+      if (!expired.empty()) changed_.SignalAll();
     }
+    for (const JobPtr& job : begun) job->tell_begun();
+    begun.clear();
     for (const JobPtr& job : expired) job->finish(job->expired());
     expired.clear();
   }

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -48,6 +49,9 @@ class RenderThread {
   /// Ends `job` with CANCELLED before it returns, wherever it is; nothing when it has ended.
   void cancel(const std::shared_ptr<FrameJob>& job) ABSL_LOCKS_EXCLUDED(mutex_);
 
+  /// Takes back pixels that an EncodedFrame came with: a later frame is made in their memory.
+  void recycle(base::Image8 pixels) ABSL_LOCKS_EXCLUDED(mutex_);
+
   /// Takes no more jobs, lets those at hand end until `deadline`, ends the rest with UNAVAILABLE, and joins the
   /// threads: at most one frame past the deadline, where the renderer does not see the cancellation sooner. Once.
   void stop(absl::Time deadline) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -56,18 +60,29 @@ class RenderThread {
 
  private:
   using JobPtr = std::shared_ptr<FrameJob>;
+  struct Drawn {
+    JobPtr job;
+    render::Frame frame;
+  };
 
   explicit RenderThread(const RenderThreadOptions& options);
 
   void run(render::FrameRenderer& renderer);
+  /// Keeps what is worth it for the renderer.
+  void keep(render::Frame frame) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void recycle_spent(render::FrameRenderer& renderer) ABSL_LOCKS_EXCLUDED(mutex_);
   /// Waits for the next job to draw; null when it is time to end.
   JobPtr next_job() ABSL_LOCKS_EXCLUDED(mutex_);
   void draw(render::FrameRenderer& renderer, const JobPtr& job);
-  void encode(const JobPtr& job, render::Frame frame);
+  /// The first of drawn_.
+  void encode_next() ABSL_LOCKS_EXCLUDED(mutex_);
   /// Ends a job that was drawn.
   void end(const JobPtr& job, absl::StatusOr<EncodedFrame> result) ABSL_LOCKS_EXCLUDED(mutex_);
-  /// Ends jobs at their deadlines.
-  void watch_deadlines() ABSL_LOCKS_EXCLUDED(mutex_);
+  /// Tells jobs that they have begun, and ends them at their deadlines.
+  void watch() ABSL_LOCKS_EXCLUDED(mutex_);
+
+  /// Frames that are drawn or encoded.
+  size_t most_at_once() const { return options_.max_encoding_frames + 1; }
 
   const RenderThreadOptions options_;
   render::RendererInfo info_;
@@ -76,14 +91,18 @@ class RenderThread {
   absl::CondVar changed_;  // signalled when anything below changes
   std::vector<JobPtr> queued_ ABSL_GUARDED_BY(mutex_);
   FairShares shares_ ABSL_GUARDED_BY(mutex_);
-  std::vector<JobPtr> started_ ABSL_GUARDED_BY(mutex_);  // drawn or encoded right now, and wanted
-  size_t encoding_ ABSL_GUARDED_BY(mutex_) = 0;          // frames, wanted or not
-  bool stopping_ ABSL_GUARDED_BY(mutex_) = false;        // no more jobs come
-  bool quit_ ABSL_GUARDED_BY(mutex_) = false;            // threads end
+  std::vector<JobPtr> started_ ABSL_GUARDED_BY(mutex_);       // drawn or encoded right now, and wanted
+  std::vector<JobPtr> begun_ ABSL_GUARDED_BY(mutex_);         // and not told so
+  std::vector<Drawn> drawn_ ABSL_GUARDED_BY(mutex_);          // and not being encoded, oldest first
+  size_t encoding_ ABSL_GUARDED_BY(mutex_) = 0;               // frames, wanted or not
+  std::vector<render::Frame> spent_ ABSL_GUARDED_BY(mutex_);  // that the renderer may use again
+  bool stopping_ ABSL_GUARDED_BY(mutex_) = false;             // no more jobs come
+  bool quit_ ABSL_GUARDED_BY(mutex_) = false;                 // threads end
 
+  std::vector<const std::string*> waiting_scenes_;  // of queued_, by the render thread
   std::unique_ptr<base::WorkerPool> encoders_;
   std::thread render_thread_;
-  std::thread deadline_thread_;
+  std::thread watching_thread_;
 };
 
 }  // namespace diaphane::session

@@ -46,6 +46,16 @@ class RendererControl {
     return started_;
   }
 
+  /// Pixels of the frames that came back.
+  std::vector<base::Image8> recycled() {
+    absl::MutexLock lock(&mutex_);
+    return recycled_;
+  }
+  void recycle(base::Image8 image) {
+    absl::MutexLock lock(&mutex_);
+    recycled_.push_back(std::move(image));
+  }
+
   /// Called by the renderer. False: the frame was cancelled.
   bool pass(const std::atomic<bool>& cancelled) {
     absl::MutexLock lock(&mutex_);
@@ -68,6 +78,7 @@ class RendererControl {
   bool deaf_ = false;
   bool out_of_memory_ = false;
   std::vector<double> shares_;
+  std::vector<base::Image8> recycled_;
   int started_ = 0;
 };
 
@@ -103,6 +114,10 @@ class FakeRenderer : public render::FrameRenderer {
       frame.image = std::move(image);
     }
     return frame;
+  }
+
+  void recycle(render::Frame frame) override {
+    if (auto* image = std::get_if<base::Image8>(&frame.image)) control_->recycle(std::move(*image));
   }
 
   render::RendererInfo info() const override { return {"fake renderer", "us", "0", true, "a test asked for it"}; }

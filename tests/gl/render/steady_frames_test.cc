@@ -4,49 +4,13 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
-#include <new>
 #include <optional>
 
 #include "render/gl_renderer.h"
 #include "tests/gl/render/scenes.h"
 #include "tests/gl/render/shared_renderer.h"
-
-namespace {
-
-// Of this thread alone, which is the renderer's.
-thread_local bool counting = false;
-thread_local size_t allocations = 0;
-
-void* allocate(size_t bytes, size_t alignment) {
-  if (counting) ++allocations;
-  void* memory = alignment > alignof(std::max_align_t)
-                     ? std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment)
-                     : std::malloc(bytes == 0 ? 1 : bytes);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-
-}  // namespace
-
-// Out of line: the compiler would see malloc and free behind new and delete, and warn.
-[[gnu::noinline]] void release(void* memory) noexcept { std::free(memory); }
-
-void* operator new(size_t bytes) { return allocate(bytes, 0); }
-void* operator new[](size_t bytes) { return allocate(bytes, 0); }
-void* operator new(size_t bytes, std::align_val_t alignment) { return allocate(bytes, static_cast<size_t>(alignment)); }
-void* operator new[](size_t bytes, std::align_val_t alignment) {
-  return allocate(bytes, static_cast<size_t>(alignment));
-}
-void operator delete(void* memory) noexcept { release(memory); }
-void operator delete[](void* memory) noexcept { release(memory); }
-void operator delete(void* memory, size_t) noexcept { release(memory); }
-void operator delete[](void* memory, size_t) noexcept { release(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { release(memory); }
-void operator delete[](void* memory, std::align_val_t) noexcept { release(memory); }
-void operator delete(void* memory, size_t, std::align_val_t) noexcept { release(memory); }
-void operator delete[](void* memory, size_t, std::align_val_t) noexcept { release(memory); }
+#include "tests/support/allocations.h"
 
 namespace diaphane::render {
 namespace {
@@ -96,16 +60,14 @@ size_t allocations_of_frames(FrameRenderer& renderer, FrameRequest request, bool
   const std::atomic<bool> not_cancelled = false;
   request.scene = poses[0];
   size_t before_kib = 0;
+  std::atomic<size_t> allocations = 0;
   for (int i = -40; i < 300; ++i) {
     if (deforming) request.scene = poses[static_cast<size_t>(i + 40) % poses.size()];
     request.camera.eye.x = std::sin(0.1f * static_cast<float>(i));
-    if (i == 0) {
-      allocations = 0;
-      before_kib = resident_kib();
-    }
-    counting = i >= 0;
+    if (i == 0) before_kib = resident_kib();
+    count_allocations_of_this_thread(i >= 0 ? &allocations : nullptr);
     absl::StatusOr<Frame> frame = renderer.render(request, not_cancelled);
-    counting = false;
+    count_allocations_of_this_thread(nullptr);
     EXPECT_TRUE(frame.ok()) << frame.status();
     if (frame.ok()) renderer.recycle(*std::move(frame));
   }

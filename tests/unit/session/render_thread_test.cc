@@ -14,6 +14,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
 
 using Answer = std::future<absl::StatusOr<EncodedFrame>>;
 
@@ -68,6 +69,34 @@ TEST_F(RenderThreadTest, AnswersWithTheFrameAndItsStages) {
   std::vector<std::string> stages;
   for (const render::StageTime& stage : frame->stages) stages.push_back(stage.stage);
   EXPECT_THAT(stages, ElementsAre("queue", "shade", "atlas", "encode"));
+}
+
+TEST_F(RenderThreadTest, GivesFramesBackToTheRendererBeforeTheNext) {
+  for (uint64_t revision = 1; revision <= 3; ++revision) {
+    Answer answer;
+    ASSERT_TRUE(thread_->submit(task(answer, revision)).ok());
+    ASSERT_TRUE(answer.get().ok());
+  }
+  thread_->recycle({2, 1, std::vector<uint8_t>(8, 77)});
+  Answer answer;
+  ASSERT_TRUE(thread_->submit(task(answer, 4)).ok());
+  ASSERT_TRUE(answer.get().ok());
+  std::vector<int> firsts;
+  for (const base::Image8& image : control_->recycled()) firsts.push_back(image.rgba.at(0));
+  EXPECT_THAT(firsts, IsSupersetOf({1, 2, 77}));
+}
+
+TEST_F(RenderThreadTest, TellsThatAFrameHasBegunWhileItIsDrawn) {
+  control_->hold();
+  std::promise<void> begun;
+  Answer answer;
+  FrameTask told = task(answer);
+  told.begun = [&] { begun.set_value(); };
+  ASSERT_TRUE(thread_->submit(std::move(told)).ok());
+  begun.get_future().wait();
+  EXPECT_FALSE(answered(answer));
+  control_->release();
+  EXPECT_TRUE(answer.get().ok());
 }
 
 TEST_F(RenderThreadTest, AsksForThePixelsThatTheFormatNeeds) {

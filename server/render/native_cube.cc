@@ -7,6 +7,7 @@
 #include "glm/geometric.hpp"
 #include "render/raster.h"
 #include "render/raster_candidates.h"
+#include "render/raster_triangles.h"
 #include "tbb/blocked_range.h"
 #include "tbb/parallel_for.h"
 
@@ -34,36 +35,22 @@ void NativeCube::snap(std::span<const glm::vec3> positions_mm) {
   });
 }
 
-void NativeCube::see(const RasterMesh& mesh, int axis, size_t begin, size_t end) {
+void NativeCube::see(const RasterMesh& mesh, size_t begin, size_t end) {
   const auto face_cells = static_cast<size_t>(size_px_) * static_cast<size_t>(size_px_);
   const auto whole = static_cast<float>(kSubpixels * size_px_);
-  const int u = u_axis(axis), v = v_axis(axis);
-  uint64_t* const above = seen_.data() + static_cast<size_t>(2 * axis) * face_cells;
-  uint64_t* const below = above + face_cells;
-  uint32_t candidates[kChunk + 16];
-  const size_t count = find_candidates(mesh.triangles, begin, end,
-                                       {&vertices_[0].of_axis[u], &vertices_[0].of_axis[v], size_px_, size_px_},
-                                       Turn::kEither, candidates);
-  for (size_t i = 0; i < count; ++i) {
-    const uint32_t index = candidates[i];
-    const glm::uvec3& corners = mesh.triangles[index];
-    const Snapped* at[3] = {&vertices_[corners.x], &vertices_[corners.y], &vertices_[corners.z]};
-    RasterPoint p[3];
-    for (int k = 0; k < 3; ++k) p[k] = {at[k]->of_axis[u], at[k]->of_axis[v]};
-    const int64_t area = doubled_area(p[0], p[1], p[2]);
-    if (area == 0) continue;
-    const int b = area > 0 ? 1 : 2, c = 3 - b;
-    const auto depth = [&](int k) { return static_cast<float>(at[k]->of_axis[axis]); };
-    const float from = depth(0), to_b = depth(b) - from, to_c = depth(c) - from;
-    // Counter-clockwise is the outside seen from above, along −axis.
-    const bool looks_up = (area > 0) != mesh.flipped;
-    const RasterRange range = raster_range(p[0], p[1], p[2], size_px_, size_px_);
-    cover_any(p[0], p[b], p[c], std::abs(area), range, [&](int x, int y, float of_b, float of_c) {
-      const float height = from + of_b * to_b + of_c * to_c;
-      const size_t cell = static_cast<size_t>(y) * static_cast<size_t>(size_px_) + static_cast<size_t>(x);
-      if (looks_up || !mesh.facing_only) raise(above[cell], visible_key(height, index));
-      if (!looks_up || !mesh.facing_only) raise(below[cell], visible_key(whole - height, index));
-    });
+  const int32_t* const places = vertices_[0].of_axis;
+  uint32_t candidates[3][kChunk + 16];
+  size_t counts[3];
+  find_candidates_by_axis(mesh.triangles, begin, end, places, size_px_, {candidates[0], candidates[1], candidates[2]},
+                          counts);
+  // Counter-clockwise is the outside seen from above, along −axis.
+  const bool outside = !mesh.facing_only || !mesh.flipped, inside = !mesh.facing_only || mesh.flipped;
+  for (int axis = 0; axis < 3; ++axis) {
+    uint64_t* const above = seen_.data() + static_cast<size_t>(2 * axis) * face_cells;
+    draw_triangles(mesh.triangles, {candidates[axis], counts[axis]}, 0,
+                   {places + u_axis(axis), places + v_axis(axis), size_px_, size_px_},
+                   {.integer = places + axis, .whole = whole}, {above, outside, inside},
+                   {above + face_cells, inside, outside});
   }
 }
 
@@ -140,7 +127,7 @@ void NativeCube::draw(const AtlasKey& key, const BoxUniforms& box, const RasterM
   const size_t triangles = mesh.triangles.size();
   tbb::parallel_for(size_t{0}, (triangles + kChunk - 1) / kChunk, [&](size_t chunk) {
     const size_t begin = chunk * kChunk, end = std::min(begin + kChunk, triangles);
-    for (int axis = 0; axis < 3; ++axis) see(mesh, axis, begin, end);
+    see(mesh, begin, end);
   });
   const int bands = (size_px_ + kRowsAtOnce - 1) / kRowsAtOnce;
   tbb::parallel_for(0, kFaces * bands, [&](int job) {

@@ -37,7 +37,7 @@ class NativeCube {
   };
 
   void snap(std::span<const glm::vec3> positions_mm);
-  void see(const RasterMesh& mesh, int axis, size_t begin, size_t end);
+  void see(const RasterMesh& mesh, size_t begin, size_t end);
   void fill_rows(const RasterMesh& mesh, int face, int begin, int end);
   void store(const PointBatch& points, const RasterMesh& mesh, int face);
 

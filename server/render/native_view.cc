@@ -7,6 +7,7 @@
 
 #include "glm/vec4.hpp"
 #include "render/raster_candidates.h"
+#include "render/raster_triangles.h"
 #include "tbb/blocked_range.h"
 #include "tbb/parallel_for.h"
 
@@ -129,11 +130,11 @@ void NativeView::see(const RasterMesh& mesh, uint32_t first_triangle, size_t beg
   }
   uint32_t candidates[kChunk + 16];
   const Turn turn = !mesh.facing_only ? Turn::kEither : mesh.flipped ? Turn::kClockwise : Turn::kCounterClockwise;
-  const size_t count = find_candidates(mesh.triangles, begin, end,
-                                       {&corners_[0].at.x, &corners_[0].at.y, static_cast<int32_t>(tile_.width_px),
-                                        static_cast<int32_t>(tile_.height_px)},
-                                       turn, candidates);
-  for (size_t i = 0; i < count; ++i) see_whole(candidates[i]);
+  const CornerPlaces places{&corners_[0].at.x, &corners_[0].at.y, static_cast<int32_t>(tile_.width_px),
+                            static_cast<int32_t>(tile_.height_px)};
+  const size_t count = find_candidates(mesh.triangles, begin, end, places, turn, candidates);
+  draw_triangles(mesh.triangles, {candidates, count}, first_triangle, places, {.real = &corners_[0].nearness},
+                 {seen_.data(), turn != Turn::kClockwise, turn != Turn::kCounterClockwise}, {});
 }
 
 void NativeView::draw(const Picture& picture, const Tile& tile, std::span<const RasterMesh> meshes) {

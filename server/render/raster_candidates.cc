@@ -26,22 +26,34 @@ HWY_INLINE hn::Mask<IndexTag> holds_centre(Index a, Index b, Index c, int32_t si
   return hn::Lt(begin, end);
 }
 
+/// Places of the corners of the triangles from `i` on, in numbers; past `end` those of the one at `i`.
+HWY_INLINE void load_corners(const glm::uvec3* triangles, size_t i, size_t end, Index (&place)[3]) {
+  const IndexTag di;
+  const size_t lanes = hn::Lanes(di);
+  const auto* vertices = reinterpret_cast<const int32_t*>(triangles + i);
+  alignas(64) int32_t last[3 * hn::MaxLanes(di)];
+  if (end - i < lanes) {
+    for (size_t k = 0; k < 3 * lanes; ++k) last[k] = vertices[k < 3 * (end - i) ? k : k % 3];
+    vertices = last;
+  }
+  hn::LoadInterleaved3(di, vertices, place[0], place[1], place[2]);
+  const Index three = hn::Set(di, 3);
+  for (Index& number : place) number = hn::Mul(number, three);
+}
+
 size_t candidates_of(const glm::uvec3* triangles, size_t begin, size_t end, const CornerPlaces& corners, Turn turn,
                      uint32_t* candidates) {
   const IndexTag di;
   const Tag d;
-  const auto* vertices = reinterpret_cast<const int32_t*>(triangles);
-  const Index three = hn::Set(di, 3);
   size_t found = 0;
   for (size_t i = begin; i < end; i += hn::Lanes(di)) {
     const Index own = hn::Iota(di, static_cast<int32_t>(i));
     const auto there = hn::Lt(own, hn::Set(di, static_cast<int32_t>(end)));
-    const Index first = hn::Mul(hn::IfThenElse(there, own, hn::Set(di, static_cast<int32_t>(begin))), three);
-    Index x[3], y[3];
+    Index place[3], x[3], y[3];
+    load_corners(triangles, i, end, place);
     for (int k = 0; k < 3; ++k) {
-      const Index place = hn::Mul(hn::GatherIndex(di, vertices, hn::Add(first, hn::Set(di, k))), three);
-      x[k] = hn::GatherIndex(di, corners.x, place);
-      y[k] = hn::GatherIndex(di, corners.y, place);
+      x[k] = hn::GatherIndex(di, corners.x, place[k]);
+      y[k] = hn::GatherIndex(di, corners.y, place[k]);
     }
     auto keeps = hn::And(there, hn::And(holds_centre(x[0], x[1], x[2], corners.width_px),
                                         holds_centre(y[0], y[1], y[2], corners.height_px)));
@@ -59,17 +71,45 @@ size_t candidates_of(const glm::uvec3* triangles, size_t begin, size_t end, cons
   return found;
 }
 
+void candidates_by_axis(const glm::uvec3* triangles, size_t begin, size_t end, const int32_t* corners, int32_t size_px,
+                        uint32_t* const (&candidates)[3], size_t (&counts)[3]) {
+  const IndexTag di;
+  size_t found[3] = {};
+  for (size_t i = begin; i < end; i += hn::Lanes(di)) {
+    const Index own = hn::Iota(di, static_cast<int32_t>(i));
+    const auto there = hn::Lt(own, hn::Set(di, static_cast<int32_t>(end)));
+    Index place[3];
+    load_corners(triangles, i, end, place);
+    hn::Mask<IndexTag> holds[3];
+    for (int a = 0; a < 3; ++a) {
+      holds[a] = holds_centre(hn::GatherIndex(di, corners + a, place[0]), hn::GatherIndex(di, corners + a, place[1]),
+                              hn::GatherIndex(di, corners + a, place[2]), size_px);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto keeps = hn::And(there, hn::And(holds[(axis + 1) % 3], holds[(axis + 2) % 3]));
+      found[axis] += hn::CompressStore(own, keeps, di, reinterpret_cast<int32_t*>(candidates[axis] + found[axis]));
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) counts[axis] = found[axis];
+}
+
 }  // namespace diaphane::render::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace diaphane::render {
 HWY_EXPORT(candidates_of);
+HWY_EXPORT(candidates_by_axis);
 
 size_t find_candidates(std::span<const glm::uvec3> triangles, size_t begin, size_t end, const CornerPlaces& corners,
                        Turn turn, uint32_t* candidates) {
   if (begin == end) return 0;
   return HWY_DYNAMIC_DISPATCH(candidates_of)(triangles.data(), begin, end, corners, turn, candidates);
+}
+
+void find_candidates_by_axis(std::span<const glm::uvec3> triangles, size_t begin, size_t end, const int32_t* corners,
+                             int32_t size_px, uint32_t* const (&candidates)[3], size_t (&counts)[3]) {
+  HWY_DYNAMIC_DISPATCH(candidates_by_axis)(triangles.data(), begin, end, corners, size_px, candidates, counts);
 }
 
 }  // namespace diaphane::render

@@ -22,4 +22,9 @@ enum class Turn { kEither, kCounterClockwise, kClockwise };
 size_t find_candidates(std::span<const glm::uvec3> triangles, size_t begin, size_t end, const CornerPlaces& corners,
                        Turn turn, uint32_t* candidates);
 
+/// The same on three square rasters, each seen along an axis of `corners`, three numbers a corner: candidates[axis] may
+/// cover a pixel there, however they run, and `counts` says how many they are.
+void find_candidates_by_axis(std::span<const glm::uvec3> triangles, size_t begin, size_t end, const int32_t* corners,
+                             int32_t size_px, uint32_t* const (&candidates)[3], size_t (&counts)[3]);
+
 }  // namespace diaphane::render

@@ -49,8 +49,10 @@ using V = hn::Vec<FloatTag>;
 using Mask = hn::Mask<Tag>;
 
 constexpr size_t kMostLanes = 16;
-// Pixels are asked in blocks of four columns and as many rows as fill a vector.
-constexpr int32_t kColumns = 4;
+// Pixels are asked in blocks of four columns and as many rows as fill a vector; one by one without vectors.
+constexpr int kColumnBits = hn::MaxLanes(Tag()) < 4 ? 0 : 2;
+constexpr int32_t kColumns = 1 << kColumnBits;
+constexpr auto kRows = static_cast<int32_t>(hn::MaxLanes(Tag())) >> kColumnBits;
 
 /// Triangles side by side, one a lane, and what cover() makes of each.
 struct Setup {
@@ -177,15 +179,14 @@ HWY_INLINE void draw_lane(const Raster& raster, const Setup& setup, size_t lane,
                           uint64_t* back) {
   const Tag d;
   const FloatTag df;
-  constexpr auto kRows = static_cast<int32_t>(hn::MaxLanes(d)) / kColumns;
   const Index order = hn::Iota(d, 0);
-  const Index column = hn::And(order, hn::Set(d, kColumns - 1)), row = hn::ShiftRight<2>(order);
+  const Index column = hn::And(order, hn::Set(d, kColumns - 1)), row = hn::ShiftRight<kColumnBits>(order);
   Index left[3], right_step[3], up_step[3];
   for (int k = 0; k < 3; ++k) {
     const Setup::Edge& edge = setup.edge[k];
     const Index step_x = hn::Set(d, edge.step_x[lane]), step_y = hn::Set(d, edge.step_y[lane]);
     left[k] = hn::Add(hn::Set(d, edge.value[lane]), hn::Add(hn::Mul(column, step_x), hn::Mul(row, step_y)));
-    right_step[k] = hn::ShiftLeft<2>(step_x);
+    right_step[k] = hn::ShiftLeft<kColumnBits>(step_x);
     up_step[k] = hn::Mul(step_y, hn::Set(d, kRows));
   }
   const V depth = hn::Set(df, setup.depth[lane]), to_b = hn::Set(df, setup.to_b[lane]),

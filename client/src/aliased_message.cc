@@ -1,11 +1,11 @@
 #include "aliased_message.h"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "google/protobuf/io/coded_stream.h"
 #include "google/protobuf/io/zero_copy_stream.h"
-#include "grpcpp/support/slice.h"
 
 namespace diaphane::internal {
 namespace {
@@ -30,7 +30,7 @@ class SliceStream final : public google::protobuf::io::ZeroCopyOutputStream {
   bool AllowsAliasing() const override { return true; }
   bool WriteAliasedRaw(const void* data, int size) override {
     close_block();
-    add(grpc::Slice(const_cast<void*>(data), static_cast<size_t>(size), release, new MessagePtr(owner_)));
+    add(aliased_slice(data, static_cast<size_t>(size), owner_));
     return true;
   }
 
@@ -41,8 +41,6 @@ class SliceStream final : public google::protobuf::io::ZeroCopyOutputStream {
 
  private:
   static constexpr int kBlockBytes = 256;
-
-  static void release(void* owner) { delete static_cast<MessagePtr*>(owner); }
 
   void close_block() {
     if (!block_.empty()) add(grpc::Slice(block_));
@@ -60,6 +58,12 @@ class SliceStream final : public google::protobuf::io::ZeroCopyOutputStream {
 };
 
 }  // namespace
+
+grpc::Slice aliased_slice(const void* bytes, size_t count, std::shared_ptr<const void> owner) {
+  using Owner = std::shared_ptr<const void>;
+  return {const_cast<void*>(bytes), count, [](void* kept) { delete static_cast<Owner*>(kept); },
+          new Owner(std::move(owner))};
+}
 
 grpc::ByteBuffer aliased_bytes(const MessagePtr& message) {
   SliceStream stream(message);

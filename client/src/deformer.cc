@@ -1,3 +1,4 @@
+#include <cstring>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -8,9 +9,9 @@
 #include "convert.h"
 #include "diaphane/scene.h"
 #include "diaphane/stream.h"
-#include "edit_call.h"
 #include "fmt/format.h"
 #include "meshoptimizer.h"
+#include "outgoing_edit.h"
 #include "quantize.h"
 #include "reopening.h"
 
@@ -45,52 +46,48 @@ class Deformer::Impl {
 
   absl::Status add_floats(v1::SceneChange change, std::span<const Vec3> values) {
     v1::VertexPositions& positions = *change.mutable_positions();
-    std::string bytes = std::exchange(spare_, {});
+    positions.mutable_float32();
+    const auto* bytes = reinterpret_cast<const char*>(values.data());
     if (options_.compress && !values.empty()) {
-      compress(values.data(), values.size(), sizeof(Vec3), bytes, positions);
-    } else {
-      bytes.assign(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+      return add_bytes(std::move(change), compressed(values.data(), values.size(), sizeof(Vec3), positions));
     }
-    positions.set_float32(std::move(bytes));
-    return add(std::move(change));
+    return add_filling(std::move(change), values.size_bytes(),
+                       [&](char* to, size_t first, size_t count) { std::memcpy(to, bytes + first, count); });
   }
   absl::Status add_quantized(v1::SceneChange change, std::span<const Vec3> values, const Vec3& lowest,
                              const Vec3& highest) {
+    if (absl::Status held = internal::check_in_box(values, lowest, highest); !held.ok()) return held;
     v1::VertexPositions& positions = *change.mutable_positions();
-    std::string bytes = std::exchange(spare_, {});
-    const bool compressed = options_.compress && !values.empty();
-    // The codec's elements are of four bytes or a multiple.
-    const size_t width = compressed ? 4 : 3;
-    std::string& steps = compressed ? steps_ : bytes;
-    steps.resize(width * sizeof(uint16_t) * values.size());
-    if (absl::Status status =
-            internal::steps_in_box(values, lowest, highest, width, reinterpret_cast<uint16_t*>(steps.data()));
-        !status.ok()) {
-      return status;
-    }
-    if (compressed) compress(steps.data(), values.size(), width * sizeof(uint16_t), bytes, positions);
     v1::QuantizedPositions& quantized = *positions.mutable_quantized();
     *quantized.mutable_lowest() = to_proto(lowest);
     *quantized.mutable_highest() = to_proto(highest);
-    quantized.set_uint16(std::move(bytes));
-    return add(std::move(change));
+    if (options_.compress && !values.empty()) {
+      // The codec's elements are of four bytes or a multiple.
+      constexpr size_t kEach = 4 * sizeof(uint16_t);
+      steps_.resize(4 * values.size());
+      internal::steps_in_box(values, lowest, highest, 4, steps_.data());
+      return add_bytes(std::move(change), compressed(steps_.data(), values.size(), kEach, positions));
+    }
+    constexpr size_t kEach = 3 * sizeof(uint16_t);
+    return add_filling(std::move(change), kEach * values.size(), [&](char* to, size_t first, size_t count) {
+      internal::steps_in_box(values.subspan(first / kEach, count / kEach), lowest, highest, 3,
+                             reinterpret_cast<uint16_t*>(to));
+    });
   }
 
   void begin() { group_.emplace(); }
 
   absl::Status add(v1::SceneChange change) {
     if (group_.has_value()) {
-      *group_->add_changes() = std::move(change);
+      *group_->request->mutable_edit()->add_changes() = std::move(change);
       return failed_;
     }
-    v1::SceneEdit edit;
-    *edit.add_changes() = std::move(change);
-    return send(std::move(edit));
+    return send(edit_of(std::move(change)), std::nullopt);
   }
 
   absl::Status commit() {
     if (!group_.has_value()) return absl::FailedPreconditionError("commit(): must follow begin()");
-    return send(*std::exchange(group_, std::nullopt));
+    return send(*std::exchange(group_, std::nullopt), std::nullopt);
   }
 
   absl::StatusOr<uint64_t> flush() {
@@ -101,27 +98,72 @@ class Deformer::Impl {
  private:
   static constexpr size_t kMostWaiting = 32;
 
-  /// `values`, `each` bytes an element, as `bytes` that `positions` carries.
-  static void compress(const void* values, size_t count, size_t each, std::string& bytes,
-                       v1::VertexPositions& positions) {
+  // Fewer bytes travel with their edit.
+  static constexpr size_t kInlineBytes = size_t{64} << 10;
+
+  static internal::OutgoingEdit edit_of(v1::SceneChange change) {
+    internal::OutgoingEdit edit;
+    *edit.request->mutable_edit()->add_changes() = std::move(change);
+    return edit;
+  }
+
+  /// `values`, `each` bytes an element, as the codec makes them.
+  static std::string compressed(const void* values, size_t count, size_t each, v1::VertexPositions& positions) {
     meshopt_encodeVertexVersion(0);
-    bytes.resize(meshopt_encodeVertexBufferBound(count, each));
+    std::string bytes(meshopt_encodeVertexBufferBound(count, each), '\0');
     bytes.resize(
         meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(), values, count, each));
     positions.set_meshopt_count(static_cast<uint32_t>(count));
+    return bytes;
   }
 
-  absl::Status send(v1::SceneEdit edit) {
+  /// Positions whose bytes are made.
+  absl::Status add_bytes(v1::SceneChange change, std::string bytes) {
+    v1::VertexPositions& positions = *change.mutable_positions();
+    if (bytes.size() <= kInlineBytes) {
+      (positions.has_quantized() ? *positions.mutable_quantized()->mutable_uint16() : *positions.mutable_float32()) =
+          std::move(bytes);
+      return add(std::move(change));
+    }
+    positions.set_payload_bytes(bytes.size());
+    auto payload = std::make_shared<std::string>(std::move(bytes));
+    if (group_.has_value()) {
+      group_->payloads.push_back(std::move(payload));
+      return add(std::move(change));
+    }
+    internal::OutgoingEdit edit = edit_of(std::move(change));
+    edit.payloads.push_back(std::move(payload));
+    return send(std::move(edit), std::nullopt);
+  }
+
+  /// Those whose bytes `fill` makes.
+  absl::Status add_filling(v1::SceneChange change, size_t count, internal::FillPayload fill) {
+    if (count <= kInlineBytes || group_.has_value()) {
+      std::string bytes(count, '\0');
+      fill(bytes.data(), 0, count);
+      return add_bytes(std::move(change), std::move(bytes));
+    }
+    change.mutable_positions()->set_payload_bytes(count);
+    internal::OutgoingEdit edit = edit_of(std::move(change));
+    std::shared_ptr<std::string>& payload = edit.payloads.emplace_back(std::exchange(spare_, nullptr));
+    if (payload == nullptr) payload = std::make_shared<std::string>();
+    payload->resize(count);
+    return send(std::move(edit), fill);
+  }
+
+  absl::Status send(internal::OutgoingEdit edit, std::optional<internal::FillPayload> fill) {
     if (!failed_.ok()) return failed_;
-    edit.set_sequence(++sequence_);
-    auto request = std::make_shared<v1::EditSceneRequest>();
-    *request->mutable_edit() = std::move(edit);
-    waiting_.push_back(std::move(request));
+    edit.request->mutable_edit()->set_sequence(++sequence_);
+    waiting_.push_back(std::move(edit));
     // What is lost with a call that breaks is written again to the next.
+    const internal::OutgoingEdit& last = waiting_.back();
     if (!call_.has_value()) {
+      if (fill.has_value()) (*fill)(last.payloads.front()->data(), 0, last.payloads.front()->size());
       open();
+    } else if (fill.has_value()) {
+      write_filling(*call_, last, *fill);
     } else {
-      call_->write(waiting_.back());
+      write(*call_, last);
     }
     return waiting_.size() < kMostWaiting ? absl::OkStatus() : wait_until(kMostWaiting / 2);
   }
@@ -135,7 +177,7 @@ class Deformer::Impl {
       if (call_->read(&response)) {
         reopening_.succeeded();
         revision_ = response.scene_revision();
-        while (!waiting_.empty() && waiting_.front()->edit().sequence() <= response.applied()) forget_first();
+        while (!waiting_.empty() && waiting_.front().sequence() <= response.applied()) forget_first();
         continue;
       }
       const absl::Status ended = call_->finish();
@@ -153,19 +195,16 @@ class Deformer::Impl {
     request->mutable_opening()->set_scene(scene_);
     request->mutable_opening()->set_editor_id(id_);
     call_->write(request);
-    for (const auto& waiting : waiting_) call_->write(waiting);
+    for (const internal::OutgoingEdit& waiting : waiting_) {
+      if (!write(*call_, waiting)) return;  // the next read says why
+    }
   }
 
   /// Keeps the memory of its positions for the next, once nothing reads it any more.
   void forget_first() {
-    const std::shared_ptr<v1::EditSceneRequest> first = std::move(waiting_.front());
+    std::vector<std::shared_ptr<std::string>> payloads = std::move(waiting_.front().payloads);
     waiting_.pop_front();
-    if (first.use_count() > 1 || first->edit().changes_size() != 1) return;
-    v1::SceneChange& change = *first->mutable_edit()->mutable_changes(0);
-    if (!change.has_positions()) return;
-    v1::VertexPositions& positions = *change.mutable_positions();
-    spare_ = std::move(positions.has_quantized() ? *positions.mutable_quantized()->mutable_uint16()
-                                                 : *positions.mutable_float32());
+    if (!payloads.empty() && payloads.front().use_count() == 1) spare_ = std::move(payloads.front());
   }
 
   const DeformerOptions options_;
@@ -175,10 +214,10 @@ class Deformer::Impl {
   const std::string id_ = internal::new_request_id();
   uint64_t sequence_ = 0;
   uint64_t revision_ = 0;
-  std::deque<std::shared_ptr<v1::EditSceneRequest>> waiting_;  // sent, and not known to be applied
-  std::string spare_;                                          // memory of one that was
-  std::string steps_;                                          // before they are compressed
-  std::optional<v1::SceneEdit> group_;
+  std::deque<internal::OutgoingEdit> waiting_;  // sent, and not known to be applied
+  std::shared_ptr<std::string> spare_;          // a payload that was
+  std::vector<uint16_t> steps_;                 // before they are compressed
+  std::optional<internal::OutgoingEdit> group_;
   absl::Status failed_;
   std::optional<internal::EditCall> call_;
 };

@@ -1,6 +1,8 @@
 #include "edit_call.h"
 
 #include "aliased_message.h"
+#include "google/protobuf/io/coded_stream.h"
+#include "google/protobuf/io/zero_copy_stream_impl_lite.h"
 #include "retry.h"
 
 namespace diaphane::internal {
@@ -26,6 +28,20 @@ EditCall::~EditCall() {
 
 bool EditCall::write(const std::shared_ptr<const v1::EditSceneRequest>& request) {
   call_->Write(aliased_bytes(request), nullptr);
+  return wait();
+}
+
+bool EditCall::write_payload(const std::shared_ptr<const std::string>& payload, size_t first, size_t count) {
+  std::string tag;
+  {
+    google::protobuf::io::StringOutputStream stream(&tag);
+    google::protobuf::io::CodedOutputStream out(&stream);
+    constexpr uint32_t kLengthDelimited = 2;
+    out.WriteTag(v1::EditSceneRequest::kPayloadFieldNumber << 3 | kLengthDelimited);
+    out.WriteVarint64(count);
+  }
+  const grpc::Slice slices[] = {grpc::Slice(tag), aliased_slice(payload->data() + first, count, payload)};
+  call_->Write({slices, 2}, nullptr);
   return wait();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "absl/status/status.h"
 #include "diaphane/v1/scene_service.pb.h"
@@ -24,6 +25,8 @@ class EditCall {
 
   /// Waits until gRPC takes more; false once the call broke. The request must not change before it is acknowledged.
   bool write(const std::shared_ptr<const v1::EditSceneRequest>& request);
+  /// Bytes `first` to before `first` + `count` of a payload; they must not change any more.
+  bool write_payload(const std::shared_ptr<const std::string>& payload, size_t first, size_t count);
   /// Waits for a response; false once there are no more.
   bool read(v1::EditSceneResponse* response);
   /// Why there are no more. Once, after a read that was false.

@@ -41,16 +41,17 @@ class Box {
 
   const Values& lowest() const { return lowest_; }
 
-  /// `inside` becomes 0 where a value is not; then its steps mean nothing.
-  Steps steps_of(const Values& values, FourInts& inside) const {
+  /// `inside` becomes 0 where a value is not, NaN too.
+  void look_at(const Values& values, FourInts& inside) const {
+    for (size_t i = 0; i < 3; ++i) inside &= (values[i] >= lowest_[i]) & (values[i] <= highest_[i]);
+  }
+
+  /// Of values inside.
+  Steps steps_of(const Values& values) const {
     Steps steps;
     for (size_t i = 0; i < 3; ++i) {
-      // False for NaN; what is outside becomes 0, so that the conversion is defined.
-      const FourInts here = (values[i] >= lowest_[i]) & (values[i] <= highest_[i]);
-      const Four step = (values[i] - lowest_[i]) * scale_[i] + 0.5f;
-      const FourInts whole = __builtin_convertvector((Four)((FourInts)step & here), FourInts);
+      const FourInts whole = __builtin_convertvector((values[i] - lowest_[i]) * scale_[i] + 0.5f, FourInts);
       steps[i] = (FourShorts)(__builtin_convertvector(whole - 32768, FourSigned) ^ (int16_t)(-32768));
-      inside &= here;
     }
     return steps;
   }
@@ -85,10 +86,24 @@ absl::Status refusal(std::span<const Vec3> values, const Vec3& lowest, const Vec
                                                 found - values.begin(), text(lowest), text(highest), text(*found)));
 }
 
+/// Calls take(first, block, count) for four values at a time; of the last block, which `lowest` fills up, for fewer.
+template <typename Take>
+void for_each_block(std::span<const Vec3> values, const Box& box, const Take& take) {
+  const size_t whole = values.size() / kAtOnce * kAtOnce;
+  for (size_t first = 0; first < whole; first += kAtOnce) {
+    Values block;
+    std::memcpy(block.data(), &values[first], sizeof(block));
+    take(first, block, kAtOnce);
+  }
+  if (whole == values.size()) return;
+  Values block = box.lowest();
+  std::memcpy(block.data(), &values[whole], (values.size() - whole) * sizeof(Vec3));
+  take(whole, block, values.size() - whole);
+}
+
 }  // namespace
 
-absl::Status steps_in_box(std::span<const Vec3> values, const Vec3& lowest, const Vec3& highest, size_t width,
-                          uint16_t* steps) {
+absl::Status check_in_box(std::span<const Vec3> values, const Vec3& lowest, const Vec3& highest) {
   if (!is_box(lowest, highest)) {
     return absl::InvalidArgumentError(
         fmt::format("highest: must be finite and at least lowest, {}, got {}", text(lowest), text(highest)));
@@ -96,29 +111,24 @@ absl::Status steps_in_box(std::span<const Vec3> values, const Vec3& lowest, cons
   const Box box(lowest, highest);
   // All at once first; which one is outside is asked only then.
   FourInts inside = {-1, -1, -1, -1};
-  const size_t whole = values.size() / kAtOnce * kAtOnce;
-  for (size_t first = 0; first < whole; first += kAtOnce) {
-    Values block;
-    std::memcpy(block.data(), &values[first], sizeof(block));
-    const Steps found = box.steps_of(block, inside);
-    if (width == 3) {
-      for (size_t i = 0; i < found.size(); ++i) std::memcpy(steps + 3 * first + 4 * i, &found[i], sizeof(found[i]));
-    } else {
-      spread(found, kAtOnce, steps + 4 * first);
-    }
-  }
-  if (const size_t left = values.size() - whole; left > 0) {
-    Values block = box.lowest();
-    std::memcpy(block.data(), &values[whole], left * sizeof(Vec3));
-    const Steps found = box.steps_of(block, inside);
-    if (width == 3) {
-      std::memcpy(steps + 3 * whole, found.data(), left * 3 * sizeof(uint16_t));
-    } else {
-      spread(found, left, steps + 4 * whole);
-    }
-  }
+  for_each_block(values, box, [&](size_t, const Values& block, size_t) { box.look_at(block, inside); });
   if ((inside[0] & inside[1] & inside[2] & inside[3]) == 0) return refusal(values, lowest, highest);
   return absl::OkStatus();
+}
+
+void steps_in_box(std::span<const Vec3> values, const Vec3& lowest, const Vec3& highest, size_t width,
+                  uint16_t* steps) {
+  const Box box(lowest, highest);
+  for_each_block(values, box, [&](size_t first, const Values& block, size_t count) {
+    const Steps found = box.steps_of(block);
+    if (width == 4) return spread(found, count, steps + 4 * first);
+    uint16_t* const to = steps + 3 * first;
+    if (count < kAtOnce) {
+      std::memcpy(to, found.data(), count * 3 * sizeof(uint16_t));
+      return;
+    }
+    for (size_t i = 0; i < found.size(); ++i) std::memcpy(to + 4 * i, &found[i], sizeof(found[i]));
+  });
 }
 
 }  // namespace diaphane::internal

@@ -1,16 +1,17 @@
 #include "service/edit_stream.h"
 
 #include <new>
+#include <utility>
 
 #include "base/status.h"
 #include "fmt/format.h"
-#include "service/convert/edit.h"
 #include "service/convert/status.h"
 
 namespace diaphane::service {
 namespace {
 
 constexpr size_t kMaxEditorIdBytes = 64;
+constexpr size_t kMostPayloadBytes = size_t{1} << 20;
 
 }  // namespace
 
@@ -57,9 +58,15 @@ void EditStream::OnCancel() {
 absl::Status EditStream::take(const v1::EditSceneRequest& request) {
   if (request.has_opening()) return open(request.opening());
   if (scene_.empty()) return base::invalid_field("part", "an opening first", "none");
-  if (!request.has_edit()) return base::invalid_field("part", "an edit", "nothing");
+  const bool is_payload = request.part_case() == v1::EditSceneRequest::kPayload;
+  if (!is_payload && !request.has_edit()) return base::invalid_field("part", "an edit or payload", "nothing");
+  if (is_payload != edit_.has_value()) {
+    const uint64_t bytes = edit_.has_value() ? edit_->reader.bytes_to_come() : 0;
+    return base::invalid_field("part", bytes > 0 ? fmt::format("payload, {} more bytes", bytes) : "an edit",
+                               is_payload ? "payload" : "an edit");
+  }
   try {
-    return editor_->apply(turn_, [&] { return apply(request.edit()); });
+    return is_payload ? take_payload(request.payload()) : begin(request.edit());
   } catch (const std::bad_alloc&) {
     return absl::ResourceExhaustedError("out of memory");
   }
@@ -78,20 +85,40 @@ absl::Status EditStream::open(const v1::EditOpening& opening) {
   return absl::OkStatus();
 }
 
-absl::Status EditStream::apply(const v1::SceneEdit& edit) {
+absl::Status EditStream::begin(const v1::SceneEdit& edit) {
   if (sequence_.has_value() && edit.sequence() != *sequence_ + 1) {
     return base::invalid_field("edit.sequence", fmt::format("{}, after {}", *sequence_ + 1, *sequence_),
                                fmt::format("{}", edit.sequence()));
   }
-  const absl::StatusOr<scene::Reservation> decoding = store_.reserve(decoded_bytes(edit));
-  if (!decoding.ok()) return decoding.status();
-  auto changes = from_proto(edit);
-  if (!changes.ok()) return changes.status();
-  const absl::StatusOr<uint64_t> revision = store_.apply({"scene", scene_}, *std::move(changes));
-  if (!revision.ok()) return revision.status();
-  sequence_ = edit.sequence();
+  absl::StatusOr<scene::Reservation> memory = store_.reserve(decoded_bytes(edit));
+  if (!memory.ok()) return memory.status();
+  absl::StatusOr<EditReader> reader = EditReader::begin(edit);
+  if (!reader.ok()) return reader.status();
+  edit_.emplace(Edit{edit.sequence(), *std::move(memory), *std::move(reader)});
+  return edit_->reader.bytes_to_come() > 0 ? absl::OkStatus() : apply();
+}
+
+absl::Status EditStream::take_payload(const std::string& bytes) {
+  if (bytes.size() > kMostPayloadBytes) {
+    return base::invalid_field("payload", fmt::format("at most {} bytes", kMostPayloadBytes),
+                               fmt::format("{} bytes", bytes.size()));
+  }
+  if (absl::Status added = edit_->reader.add(bytes); !added.ok()) return added;
+  return edit_->reader.bytes_to_come() > 0 ? absl::OkStatus() : apply();
+}
+
+absl::Status EditStream::apply() {
+  // Its memory is free once it is applied.
+  Edit edit = *std::exchange(edit_, std::nullopt);
+  absl::StatusOr<uint64_t> revision = uint64_t{0};
+  const absl::Status applied = editor_->apply(turn_, [&] {
+    revision = store_.apply({"scene", scene_}, edit.reader.finish());
+    return revision.status();
+  });
+  if (!applied.ok()) return applied;
+  sequence_ = edit.sequence;
   const absl::MutexLock lock(&mutex_);
-  applied_.set_applied(edit.sequence());
+  applied_.set_applied(edit.sequence);
   applied_.set_scene_revision(*revision);
   if (!writing_) acknowledge();
   return absl::OkStatus();

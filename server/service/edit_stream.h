@@ -9,6 +9,7 @@
 #include "absl/synchronization/mutex.h"
 #include "diaphane/v1/scene_service.grpc.pb.h"
 #include "scene/scene_store.h"
+#include "service/convert/edit.h"
 #include "service/editors.h"
 #include "service/open_streams.h"
 
@@ -28,7 +29,10 @@ class EditStream final : public grpc::ServerBidiReactor<v1::EditSceneRequest, v1
  private:
   absl::Status take(const v1::EditSceneRequest& request);
   absl::Status open(const v1::EditOpening& opening);
-  absl::Status apply(const v1::SceneEdit& edit);
+  absl::Status begin(const v1::SceneEdit& edit);
+  absl::Status take_payload(const std::string& bytes);
+  /// What has come whole.
+  absl::Status apply();
   void acknowledge() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void finish(const absl::Status& status) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
@@ -42,6 +46,12 @@ class EditStream final : public grpc::ServerBidiReactor<v1::EditSceneRequest, v1
   std::shared_ptr<Editor> editor_;
   uint64_t turn_ = 0;                 ///< of this stream among the editor's
   std::optional<uint64_t> sequence_;  ///< of the last edit
+  struct Edit {
+    uint64_t sequence;
+    scene::Reservation memory;
+    EditReader reader;
+  };
+  std::optional<Edit> edit_;  ///< whose payload has not come whole
 
   absl::Mutex mutex_;
   v1::EditSceneResponse applied_ ABSL_GUARDED_BY(mutex_);

@@ -42,6 +42,11 @@ bool is_accepted(const absl::StatusOr<T>& value) {
   return value.ok();
 }
 
+bool is_accepted(const absl::Status& status) {
+  if (!status.ok()) check_refusal(status);
+  return status.ok();
+}
+
 void convert(const v1::RenderFrameRequest& request, std::string_view) {
   const auto task = service::from_proto(request, kMostPixels);
   if (!is_accepted(task)) return;
@@ -132,19 +137,38 @@ void check_positions(const scene::PositionsPatch& patch) {
   for (const glm::vec3& position : patch.positions) require(is_finite(position), "finite positions");
 }
 
-void convert(const v1::VertexPositions& request, std::string_view) {
-  const auto patch = service::from_proto(request);
-  if (!is_accepted(patch)) return;
-  check_positions(*patch);
-  if (request.meshopt_count() == 0) return;
-  require(patch->positions.size() * sizeof(glm::vec3) <= service::decoded_bytes(request), "the memory that was told");
+constexpr uint64_t kMostDecodedBytes = uint64_t{64} << 20;  // as the store's memory bounds a server
+
+/// Feeds what is to come, in pieces of what there is; false where it is refused, or there is too little.
+template <typename Reader>
+bool feed(Reader& reader, std::string_view bytes) {
+  size_t piece = 12;
+  while (reader.bytes_to_come() > 0) {
+    piece = std::min<uint64_t>({piece, bytes.size(), reader.bytes_to_come()});
+    if (!is_accepted(reader.add(bytes.substr(0, piece)))) return false;
+    bytes.remove_prefix(piece);
+    piece = 2 * piece + 12;
+  }
+  return true;
 }
 
-void convert(const v1::SceneEdit& request, std::string_view) {
-  const auto changes = service::from_proto(request);
-  if (!is_accepted(changes)) return;
-  require(!changes->empty() && changes->size() == static_cast<size_t>(request.changes_size()), "every change");
-  for (const scene::SceneChange& change : *changes) {
+void convert(const v1::VertexPositions& request, std::string_view bytes) {
+  if (service::decoded_bytes(request) > kMostDecodedBytes) return;
+  auto reader = service::PositionsReader::begin(request);
+  if (!is_accepted(reader) || !feed(*reader, bytes)) return;
+  const scene::PositionsPatch patch = reader->finish();
+  check_positions(patch);
+  if (request.meshopt_count() == 0 && request.payload_bytes() == 0) return;
+  require(patch.positions.size() * sizeof(glm::vec3) <= service::decoded_bytes(request), "the memory that was told");
+}
+
+void convert(const v1::SceneEdit& request, std::string_view bytes) {
+  if (service::decoded_bytes(request) > kMostDecodedBytes) return;
+  auto reader = service::EditReader::begin(request);
+  if (!is_accepted(reader) || !feed(*reader, bytes)) return;
+  const std::vector<scene::SceneChange> made = reader->finish();
+  require(!made.empty() && made.size() == static_cast<size_t>(request.changes_size()), "every change");
+  for (const scene::SceneChange& change : made) {
     if (const auto* positions = std::get_if<scene::PositionsPatch>(&change.patch)) check_positions(*positions);
     if (const auto* sphere = std::get_if<scene::SpherePatch>(&change.patch)) {
       require(sphere->amount >= 0 && sphere->amount <= 1, "an amount of 0..1");

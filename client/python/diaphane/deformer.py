@@ -14,6 +14,9 @@ from .reopening import Reopening
 from .v1 import scene_service_pb2
 
 _MOST_WAITING = 32
+# Positions of more bytes follow their edit, in pieces of whole positions that the server takes.
+_INLINE_BYTES = 64 << 10
+_PIECE_BYTES = 12 << 16
 
 
 def float32_rows(values: ArrayLike, width: int, name: str) -> np.ndarray:
@@ -32,6 +35,23 @@ def uint32_indices(values: ArrayLike, name: str) -> np.ndarray:
     if indices.size and not 0 <= (lowest := int(indices.min())) <= (highest := int(indices.max())) < 1 << 32:
         raise ValueError(f"{name}: must be within 0..2^32-1, got {lowest if lowest < 0 else highest}")
     return np.ascontiguousarray(indices, dtype="<u4")
+
+
+def _requests_of(edit: scene_service_pb2.SceneEdit) -> list[scene_service_pb2.EditSceneRequest]:
+    """An edit, and what follows it: long positions, in the order of its changes."""
+    payloads = []
+    for change in edit.changes:
+        positions = change.positions
+        form = positions.WhichOneof("values")
+        values, field = (positions.quantized, "uint16") if form == "quantized" else (positions, "float32")
+        if form is None or len(getattr(values, field)) <= _INLINE_BYTES:
+            continue
+        data = getattr(values, field)
+        positions.payload_bytes = len(data)
+        setattr(values, field, b"")
+        payloads += [data[first : first + _PIECE_BYTES] for first in range(0, len(data), _PIECE_BYTES)]
+    requests = [scene_service_pb2.EditSceneRequest(edit=edit)]
+    return requests + [scene_service_pb2.EditSceneRequest(payload=payload) for payload in payloads]
 
 
 class Deformer:
@@ -81,12 +101,11 @@ class Deformer:
         if self._failed is not None:
             raise self._failed
         self._sequence += 1
-        edit = scene_service_pb2.SceneEdit(sequence=self._sequence, changes=changes)
-        self._waiting.append(scene_service_pb2.EditSceneRequest(edit=edit))
+        self._waiting.append(_requests_of(scene_service_pb2.SceneEdit(sequence=self._sequence, changes=changes)))
         if self._call is None:
             self._open()
         else:
-            self._requests.put(self._waiting[-1])
+            self._put(self._waiting[-1])
         if len(self._waiting) >= _MOST_WAITING:
             self._wait_until(_MOST_WAITING // 2)
 
@@ -126,7 +145,7 @@ class Deformer:
             if applied is not None:
                 self._reopening.succeeded()
                 self._revision = applied.scene_revision
-                while self._waiting and self._waiting[0].edit.sequence <= applied.applied:
+                while self._waiting and self._waiting[0][0].edit.sequence <= applied.applied:
                     self._waiting.popleft()
                 continue
             self._requests.put(None)
@@ -142,5 +161,9 @@ class Deformer:
         opening = scene_service_pb2.EditOpening(scene=self._scene, editor_id=self._id)
         self._requests.put(scene_service_pb2.EditSceneRequest(opening=opening))
         for waiting in self._waiting:
-            self._requests.put(waiting)
+            self._put(waiting)
         self._call = self._open_call(iter(self._requests.get, None))
+
+    def _put(self, requests: list[scene_service_pb2.EditSceneRequest]) -> None:
+        for request in requests:
+            self._requests.put(request)

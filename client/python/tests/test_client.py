@@ -118,6 +118,20 @@ class ClientTest(unittest.TestCase):
         self.assertEqual(revision, before.scene_revision + 100)
         self.assertNotEqual(after.image, before.image)
 
+    def test_edits_of_more_than_a_message_are_shown_too(self) -> None:
+        positions, triangles = deform.ball(600, 800)
+        smaller = (0.5 * positions).astype(np.float32)
+        self.assertGreater(smaller.nbytes, 4 << 20)
+        images = []
+        for uploaded in (positions, smaller):
+            scene = self.client.create_scene(millimetres_per_unit=10)
+            self.addCleanup(scene.remove)
+            body = scene.add_mesh(uploaded, triangles, scene.add_material("marble"))
+            with scene.deform() as deformer:
+                deformer.set_positions(body, smaller)
+            images.append(scene.render(CAMERA, SIZE, settings=LAMBERT).image)
+        self.assertEqual(images[0], images[1])
+
     def test_morphs_by_weights_and_to_the_sphere(self) -> None:
         lift = np.zeros_like(self.positions)
         lift[:, 1] = 1

@@ -38,10 +38,9 @@ absl::StatusOr<scene::SceneChange> change_of(const std::string& name, absl::Stat
   return scene::SceneChange{name, *std::move(patch)};
 }
 
+/// But positions, which may not be all there.
 absl::StatusOr<scene::SceneChange> from_proto(const v1::SceneChange& message) {
   switch (message.change_case()) {
-    case v1::SceneChange::kPositions:
-      return change_of(message.positions().mesh(), service::from_proto(message.positions()));
     case v1::SceneChange::kWeights:
       return change_of(message.weights().mesh(), from_proto(message.weights()));
     case v1::SceneChange::kSphere:
@@ -57,6 +56,7 @@ absl::StatusOr<scene::SceneChange> from_proto(const v1::SceneChange& message) {
     case v1::SceneChange::kEnvironment:
       return change_of(message.environment().environment().name(),
                        service::from_proto(message.environment().environment(), message.environment().update_mask()));
+    case v1::SceneChange::kPositions:
     case v1::SceneChange::CHANGE_NOT_SET:
       break;
   }
@@ -65,17 +65,49 @@ absl::StatusOr<scene::SceneChange> from_proto(const v1::SceneChange& message) {
 
 }  // namespace
 
-absl::StatusOr<std::vector<scene::SceneChange>> from_proto(const v1::SceneEdit& message) {
+absl::StatusOr<EditReader> EditReader::begin(const v1::SceneEdit& message) {
   if (message.changes_size() < 1 || message.changes_size() > kMostChanges) {
     return base::invalid_field("changes", fmt::format("1..{}", kMostChanges), message.changes_size());
   }
-  std::vector<scene::SceneChange> changes;
+  EditReader reader;
   for (int i = 0; i < message.changes_size(); ++i) {
-    absl::StatusOr<scene::SceneChange> change = from_proto(message.changes(i));
-    if (!change.ok()) return base::within(fmt::format("changes[{}].", i), change.status());
-    changes.push_back(*std::move(change));
+    const v1::SceneChange& change = message.changes(i);
+    const auto within = [&](const absl::Status& status) {
+      return base::within(fmt::format("changes[{}].", i), status);
+    };
+    if (!change.has_positions()) {
+      absl::StatusOr<scene::SceneChange> read = from_proto(change);
+      if (!read.ok()) return within(read.status());
+      reader.changes_.push_back(*std::move(read));
+      continue;
+    }
+    absl::StatusOr<PositionsReader> positions = PositionsReader::begin(change.positions());
+    if (!positions.ok()) return within(positions.status());
+    scene::SceneChange& made = reader.changes_.emplace_back(change.positions().mesh(), scene::PositionsPatch{});
+    if (positions->bytes_to_come() == 0) {
+      made.patch = positions->finish();
+    } else {
+      reader.waiting_.push_back({static_cast<size_t>(i), *std::move(positions)});
+    }
   }
-  return changes;
+  return reader;
+}
+
+uint64_t EditReader::bytes_to_come() const {
+  uint64_t bytes = 0;
+  for (size_t i = next_; i < waiting_.size(); ++i) bytes += waiting_[i].reader.bytes_to_come();
+  return bytes;
+}
+
+absl::Status EditReader::add(std::string_view payload) {
+  auto& [change, reader] = waiting_[next_];
+  if (absl::Status added = reader.add(payload); !added.ok()) {
+    return base::within(fmt::format("changes[{}].", change), added);
+  }
+  if (reader.bytes_to_come() > 0) return absl::OkStatus();
+  changes_[change].patch = reader.finish();
+  ++next_;
+  return absl::OkStatus();
 }
 
 uint64_t decoded_bytes(const v1::SceneEdit& message) {

@@ -1,6 +1,9 @@
 #include "service/convert/vertex_positions.h"
 
+#include <algorithm>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "base/status.h"
 #include "fmt/format.h"
@@ -19,42 +22,62 @@ static_assert(sizeof(glm::vec3) == 12 && sizeof(Steps) == 6 && sizeof(PaddedStep
 // The codec gives each sixteen bytes of a kind two bits at least.
 constexpr uint64_t kMostExpansion = 64;
 
-uint64_t most_elements(size_t coded_bytes, size_t each) { return kMostExpansion * coded_bytes / each; }
-
-/// The elements of `bytes` as they are.
-template <typename Element>
-absl::StatusOr<std::vector<Element>> plain(std::string_view field, std::string_view bytes,
-                                           const v1::VertexPositions& message) {
-  const auto indices = static_cast<size_t>(message.indices_size());
-  const std::string got = fmt::format("{} bytes", bytes.size());
-  if (bytes.empty() || bytes.size() % sizeof(Element) != 0) {
-    return base::invalid_field(field, fmt::format("whole positions of {} bytes, at least one", sizeof(Element)), got);
-  }
-  if (indices != 0 && bytes.size() != sizeof(Element) * indices) {
-    return base::invalid_field(field, fmt::format("{} bytes, as many positions as indices", sizeof(Element) * indices),
-                               got);
-  }
-  // Copied once, into memory that nothing wrote before; a string's bytes are aligned for more than this.
-  const auto* first = reinterpret_cast<const Element*>(bytes.data());
-  return std::vector<Element>(first, first + bytes.size() / sizeof(Element));
+uint64_t most_elements(uint64_t coded_bytes, uint64_t each) {
+  // Of more no memory is left anyway; and the product stays in range.
+  return kMostExpansion * std::min(coded_bytes, uint64_t{1} << 40) / each;
 }
 
-/// The elements that the codec made `bytes` of.
-template <typename Element>
-absl::StatusOr<std::vector<Element>> decoded(std::string_view field, std::string_view bytes,
-                                             const v1::VertexPositions& message) {
+size_t bytes_of_one(const v1::VertexPositions& message) {
+  const bool coded = message.meshopt_count() != 0;
+  return message.has_quantized() ? coded ? sizeof(PaddedSteps) : sizeof(Steps) : sizeof(glm::vec3);
+}
+
+/// What came with the message.
+std::string_view inline_bytes(const v1::VertexPositions& message) {
+  return message.has_quantized() ? message.quantized().uint16() : message.float32();
+}
+
+uint64_t size_in_bytes(const v1::VertexPositions& message) {
+  return message.payload_bytes() != 0 ? message.payload_bytes() : inline_bytes(message).size();
+}
+
+std::string_view field_of(const v1::VertexPositions& message) {
+  if (message.payload_bytes() != 0) return "positions.payload_bytes";
+  return message.has_quantized() ? "positions.quantized.uint16" : "positions.float32";
+}
+
+/// Whether so many bytes can be the positions.
+absl::Status check_plain_size(const v1::VertexPositions& message) {
+  const uint64_t each = bytes_of_one(message), bytes = size_in_bytes(message);
+  const auto indices = static_cast<uint64_t>(message.indices_size());
+  const std::string got = fmt::format("{} bytes", bytes);
+  if (bytes == 0 || bytes % each != 0) {
+    return base::invalid_field(field_of(message), fmt::format("whole positions of {} bytes, at least one", each), got);
+  }
+  if (indices != 0 && bytes != each * indices) {
+    return base::invalid_field(field_of(message), fmt::format("{} bytes, as many positions as indices", each * indices),
+                               got);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_coded_count(const v1::VertexPositions& message) {
   const auto indices = static_cast<uint32_t>(message.indices_size());
   const uint32_t count = message.meshopt_count();
   if (indices != 0 && indices != count) {
     return base::invalid_field("positions.meshopt_count", fmt::format("{}, as many as indices", indices),
                                fmt::format("{}", count));
   }
-  if (count > most_elements(bytes.size(), sizeof(Element))) {
-    return base::invalid_field(
-        "positions.meshopt_count",
-        fmt::format("what {} bytes can hold, at most {}", bytes.size(), most_elements(bytes.size(), sizeof(Element))),
-        fmt::format("{}", count));
-  }
+  const uint64_t most = most_elements(size_in_bytes(message), bytes_of_one(message));
+  if (count <= most) return absl::OkStatus();
+  return base::invalid_field("positions.meshopt_count",
+                             fmt::format("what {} bytes can hold, at most {}", size_in_bytes(message), most),
+                             fmt::format("{}", count));
+}
+
+/// The elements that the codec made `bytes` of.
+template <typename Element>
+absl::StatusOr<std::vector<Element>> decoded(std::string_view field, std::string_view bytes, uint32_t count) {
   std::vector<Element> elements(count);
   if (meshopt_decodeVertexBuffer(elements.data(), count, sizeof(Element),
                                  reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()) == 0) {
@@ -65,59 +88,105 @@ absl::StatusOr<std::vector<Element>> decoded(std::string_view field, std::string
       fmt::format("{} bytes that are not", bytes.size()));
 }
 
-absl::StatusOr<std::vector<glm::vec3>> float_positions(const v1::VertexPositions& message) {
-  constexpr std::string_view kField = "positions.float32";
-  absl::StatusOr<std::vector<glm::vec3>> positions = message.meshopt_count() == 0
-                                                         ? plain<glm::vec3>(kField, message.float32(), message)
-                                                         : decoded<glm::vec3>(kField, message.float32(), message);
-  if (!positions.ok()) return positions;
-  if (absl::Status finite = geometry::check_finite(*positions, kField); !finite.ok()) return finite;
-  return positions;
-}
+constexpr std::string_view kFloats = "positions.float32", kSteps = "positions.quantized.uint16";
 
-template <typename Element>
-absl::StatusOr<std::vector<glm::vec3>> in_box(const absl::StatusOr<std::vector<Element>>& steps,
-                                              const v1::QuantizedPositions& box) {
-  if (!steps.ok()) return steps.status();
-  const auto lowest = position_from_proto(box.lowest(), "positions.quantized.lowest");
-  if (!lowest.ok()) return lowest.status();
-  const auto highest = position_from_proto(box.highest(), "positions.quantized.highest");
-  if (!highest.ok()) return highest.status();
-  std::vector<glm::vec3> positions(steps->size());
-  // A mean of the ends, so that they are met.
-  for (size_t i = 0; i < positions.size(); ++i) {
-    const glm::vec3 share = glm::vec3((*steps)[i]) / 65535.f;
-    positions[i] = *lowest * (1.f - share) + *highest * share;
-  }
-  return positions;
-}
-
-absl::StatusOr<std::vector<glm::vec3>> quantized_positions(const v1::VertexPositions& message) {
-  constexpr std::string_view kField = "positions.quantized.uint16";
-  const v1::QuantizedPositions& box = message.quantized();
-  return message.meshopt_count() == 0 ? in_box(plain<Steps>(kField, box.uint16(), message), box)
-                                      : in_box(decoded<PaddedSteps>(kField, box.uint16(), message), box);
+/// A mean of the ends, so that they are met.
+glm::vec3 in_box(const Steps& steps, const glm::vec3& lowest, const glm::vec3& highest) {
+  const glm::vec3 share = glm::vec3(steps) / 65535.f;
+  return lowest * (1.f - share) + highest * share;
 }
 
 }  // namespace
 
-absl::StatusOr<scene::PositionsPatch> from_proto(const v1::VertexPositions& message) {
-  absl::StatusOr<std::vector<glm::vec3>> positions =
-      base::invalid_field("positions.values", "float32 or quantized", "none");
-  if (message.values_case() == v1::VertexPositions::kFloat32) positions = float_positions(message);
-  if (message.has_quantized()) positions = quantized_positions(message);
-  if (!positions.ok()) return positions.status();
-  return scene::PositionsPatch{
-      {message.indices().begin(), message.indices().end()}, *std::move(positions), message.displacements()};
+absl::StatusOr<PositionsReader> PositionsReader::begin(const v1::VertexPositions& message) {
+  PositionsReader reader;
+  reader.quantized_ = message.has_quantized();
+  if (reader.quantized_) {
+    const auto lowest = position_from_proto(message.quantized().lowest(), "positions.quantized.lowest");
+    if (!lowest.ok()) return lowest.status();
+    const auto highest = position_from_proto(message.quantized().highest(), "positions.quantized.highest");
+    if (!highest.ok()) return highest.status();
+    reader.lowest_ = *lowest;
+    reader.highest_ = *highest;
+  } else if (message.values_case() != v1::VertexPositions::kFloat32) {
+    return base::invalid_field("positions.values", "float32 or quantized", "none");
+  }
+  if (message.payload_bytes() != 0 && !inline_bytes(message).empty()) {
+    return base::invalid_field("positions.payload_bytes", "0 with bytes in the message",
+                               fmt::format("{}", message.payload_bytes()));
+  }
+  reader.coded_count_ = message.meshopt_count();
+  const absl::Status size = reader.coded_count_ == 0 ? check_plain_size(message) : check_coded_count(message);
+  if (!size.ok()) return size;
+  reader.patch_.indices.assign(message.indices().begin(), message.indices().end());
+  reader.patch_.displacements = message.displacements();
+  reader.bytes_to_come_ = message.payload_bytes();
+  if (reader.bytes_to_come_ == 0) {
+    if (absl::Status taken = reader.take(inline_bytes(message)); !taken.ok()) return taken;
+    return reader;
+  }
+  if (reader.coded_count_ == 0) {
+    reader.patch_.positions.reserve(reader.bytes_to_come_ / bytes_of_one(message));
+  } else {
+    reader.coded_.reserve(reader.bytes_to_come_);
+  }
+  return reader;
+}
+
+absl::Status PositionsReader::add(std::string_view bytes) {
+  const size_t each = coded_count_ != 0 ? 1 : quantized_ ? sizeof(Steps) : sizeof(glm::vec3);
+  if (bytes.empty() || bytes.size() > bytes_to_come_ || bytes.size() % each != 0) {
+    return base::invalid_field("payload", fmt::format("1..{} bytes, a multiple of {}", bytes_to_come_, each),
+                               fmt::format("{} bytes", bytes.size()));
+  }
+  bytes_to_come_ -= bytes.size();
+  if (coded_count_ == 0) return take(bytes);
+  coded_.append(bytes);
+  return bytes_to_come_ == 0 ? take(coded_) : absl::OkStatus();
+}
+
+/// Plain ones, or all that the codec made.
+absl::Status PositionsReader::take(std::string_view bytes) {
+  std::vector<glm::vec3>& positions = patch_.positions;
+  if (quantized_) {
+    if (coded_count_ == 0) {
+      take_steps(reinterpret_cast<const Steps*>(bytes.data()), bytes.size() / sizeof(Steps));
+      return absl::OkStatus();
+    }
+    const auto steps = decoded<PaddedSteps>(kSteps, bytes, coded_count_);
+    if (!steps.ok()) return steps.status();
+    positions.reserve(steps->size());
+    for (const PaddedSteps& s : *steps) positions.push_back(in_box(Steps(s), lowest_, highest_));
+    return absl::OkStatus();
+  }
+  const size_t before = positions.size();
+  if (coded_count_ != 0) {
+    auto coded = decoded<glm::vec3>(kFloats, bytes, coded_count_);
+    if (!coded.ok()) return coded.status();
+    positions = *std::move(coded);
+  } else {
+    // Copied once, into memory that nothing wrote before; a string's bytes are aligned for more than this.
+    const auto* first = reinterpret_cast<const glm::vec3*>(bytes.data());
+    positions.insert(positions.end(), first, first + bytes.size() / sizeof(glm::vec3));
+  }
+  const auto added = std::span<const glm::vec3>(positions).subspan(before);
+  if (geometry::check_finite(added, kFloats).ok()) return absl::OkStatus();
+  return geometry::check_finite(positions, kFloats);
+}
+
+void PositionsReader::take_steps(const Steps* steps, size_t count) {
+  const size_t before = patch_.positions.size();
+  patch_.positions.resize(before + count);
+  for (size_t i = 0; i < count; ++i) patch_.positions[before + i] = in_box(steps[i], lowest_, highest_);
 }
 
 uint64_t decoded_bytes(const v1::VertexPositions& message) {
-  const bool quantized = message.has_quantized();
-  const size_t coded = quantized ? message.quantized().uint16().size() : message.float32().size();
-  const size_t each = quantized ? sizeof(PaddedSteps) : sizeof(glm::vec3);
+  const uint64_t each = bytes_of_one(message), bytes = size_in_bytes(message);
   const uint64_t count = message.meshopt_count();
-  if (count > most_elements(coded, each)) return 0;
-  return count * (quantized ? each + sizeof(glm::vec3) : each);
+  const uint64_t payload = message.payload_bytes();
+  if (count == 0) return payload / each * sizeof(glm::vec3);
+  if (count > most_elements(bytes, each)) return 0;
+  return payload + count * (message.has_quantized() ? each + sizeof(glm::vec3) : each);
 }
 
 }  // namespace diaphane::service

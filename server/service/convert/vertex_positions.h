@@ -1,17 +1,45 @@
 // Positions of vertices as edits carry them.
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+
 #include "absl/status/statusor.h"
 #include "diaphane/v1/scene_service.pb.h"
+#include "glm/vec3.hpp"
 #include "scene/scene_store.h"
 
 namespace diaphane::service {
 
-/// Plain, quantised or compressed. What is decoded is bounded by the bytes that came, and by decoded_bytes(). Errors
-/// name the field, from "positions" on.
-absl::StatusOr<scene::PositionsPatch> from_proto(const v1::VertexPositions& message);
+/// Positions as their bytes come: plain, quantised or compressed, with their message or after it. What is decoded is
+/// bounded by decoded_bytes(). Errors name the field, from "positions" on. One thread.
+class PositionsReader {
+ public:
+  static absl::StatusOr<PositionsReader> begin(const v1::VertexPositions& message);
 
-/// What from_proto() takes at most to decode compressed positions; 0 for what it refuses before.
+  /// Of the payload; 0 where all came with the message.
+  uint64_t bytes_to_come() const { return bytes_to_come_; }
+  /// The next of them. Errors name "payload" where their number is wrong.
+  absl::Status add(std::string_view bytes);
+  /// Once nothing is to come; ends the reader.
+  scene::PositionsPatch finish() { return std::move(patch_); }
+
+ private:
+  PositionsReader() = default;
+  absl::Status take(std::string_view bytes);
+  void take_steps(const glm::vec<3, uint16_t>* steps, size_t count);
+
+  scene::PositionsPatch patch_;
+  bool quantized_ = false;
+  glm::vec3 lowest_{}, highest_{};  ///< of the box
+  uint32_t coded_count_ = 0;        ///< not 0: elements that the codec made the bytes of
+  std::string coded_;               ///< the codec's bytes, where they come in pieces
+  uint64_t bytes_to_come_ = 0;
+};
+
+/// What a reader takes at most for what does not come with the message or is compressed; 0 for what it refuses before.
 uint64_t decoded_bytes(const v1::VertexPositions& message);
 
 }  // namespace diaphane::service

@@ -1,0 +1,32 @@
+// Edits that are kept until they are applied.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/functional/function_ref.h"
+#include "edit_call.h"
+
+namespace diaphane::internal {
+
+/// An edit, and the bytes that follow it, of its changes in order. Neither changes once it is written.
+struct OutgoingEdit {
+  std::shared_ptr<v1::EditSceneRequest> request = std::make_shared<v1::EditSceneRequest>();
+  std::vector<std::shared_ptr<std::string>> payloads;
+
+  uint64_t sequence() const { return request->edit().sequence(); }
+};
+
+/// Makes bytes `first` to before `first` + `count` of a payload at `to`; both are multiples of 12.
+using FillPayload = absl::FunctionRef<void(char* to, size_t first, size_t count)>;
+
+/// False once the call broke.
+bool write(EditCall& call, const OutgoingEdit& edit);
+
+/// The same of an edit whose one payload is made on the way, a piece while the one before it travels. All of it is
+/// made, whatever becomes of the call.
+bool write_filling(EditCall& call, const OutgoingEdit& edit, FillPayload fill);
+
+}  // namespace diaphane::internal

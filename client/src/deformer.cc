@@ -145,9 +145,7 @@ class Deformer::Impl {
     }
     change.mutable_positions()->set_payload_bytes(count);
     internal::OutgoingEdit edit = edit_of(std::move(change));
-    std::shared_ptr<std::string>& payload = edit.payloads.emplace_back(std::exchange(spare_, nullptr));
-    if (payload == nullptr) payload = std::make_shared<std::string>();
-    payload->resize(count);
+    edit.payloads.push_back(payloads_.take(count));
     return send(std::move(edit), fill);
   }
 
@@ -177,7 +175,7 @@ class Deformer::Impl {
       if (call_->read(&response)) {
         reopening_.succeeded();
         revision_ = response.scene_revision();
-        while (!waiting_.empty() && waiting_.front().sequence() <= response.applied()) forget_first();
+        while (!waiting_.empty() && waiting_.front().sequence() <= response.applied()) waiting_.pop_front();
         continue;
       }
       const absl::Status ended = call_->finish();
@@ -200,13 +198,6 @@ class Deformer::Impl {
     }
   }
 
-  /// Keeps the memory of its positions for the next, once nothing reads it any more.
-  void forget_first() {
-    std::vector<std::shared_ptr<std::string>> payloads = std::move(waiting_.front().payloads);
-    waiting_.pop_front();
-    if (!payloads.empty() && payloads.front().use_count() == 1) spare_ = std::move(payloads.front());
-  }
-
   const DeformerOptions options_;
   const std::shared_ptr<internal::Connection> connection_;
   internal::Reopening reopening_;
@@ -215,8 +206,8 @@ class Deformer::Impl {
   uint64_t sequence_ = 0;
   uint64_t revision_ = 0;
   std::deque<internal::OutgoingEdit> waiting_;  // sent, and not known to be applied
-  std::shared_ptr<std::string> spare_;          // a payload that was
-  std::vector<uint16_t> steps_;                 // before they are compressed
+  internal::PayloadPool payloads_;
+  std::vector<uint16_t> steps_;  // before they are compressed
   std::optional<internal::OutgoingEdit> group_;
   absl::Status failed_;
   std::optional<internal::EditCall> call_;

@@ -1,14 +1,31 @@
 #include "outgoing_edit.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace diaphane::internal {
 namespace {
 
-// The server takes up to 1 MiB; smaller ones cost more calls than reading early saves. A multiple of what positions take.
+// The server takes up to 1 MiB; smaller ones cost more calls than reading early saves. A multiple of what positions
+// take.
 constexpr size_t kPieceBytes = 12 * 65536;
 
 }  // namespace
+
+std::shared_ptr<std::string> PayloadPool::take(size_t count) {
+  std::unique_ptr<std::string> bytes;
+  {
+    const std::lock_guard lock(spare_->mutex);
+    bytes = std::move(spare_->bytes);
+  }
+  if (bytes == nullptr) bytes = std::make_unique<std::string>();
+  bytes->resize(count);
+  // gRPC may be the last to let go, on a thread of its own.
+  return {bytes.release(), [spare = spare_](std::string* used) {
+            const std::lock_guard lock(spare->mutex);
+            spare->bytes.reset(used);
+          }};
+}
 
 bool write(EditCall& call, const OutgoingEdit& edit) {
   if (!call.write(edit.request)) return false;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,20 @@
 #include "edit_call.h"
 
 namespace diaphane::internal {
+
+/// Memory of payloads, used again once nobody reads it any more. Thread-safe.
+class PayloadPool {
+ public:
+  /// `count` bytes of no particular value.
+  std::shared_ptr<std::string> take(size_t count);
+
+ private:
+  struct Spare {
+    std::mutex mutex;
+    std::unique_ptr<std::string> bytes;  ///< null: none
+  };
+  const std::shared_ptr<Spare> spare_ = std::make_shared<Spare>();
+};
 
 /// An edit, and the bytes that follow it, of its changes in order. Neither changes once it is written.
 struct OutgoingEdit {

@@ -26,6 +26,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char *kFloat32 = "float32", *kQuantized = "16bit";
 
+constexpr std::chrono::milliseconds kPause{10};
+
 struct Settings {
   std::vector<std::string> meshes = {"bunny_closed_72k.ply", "buddha_381k.ply"};
   std::string folder = "../shared/data/meshes";
@@ -93,6 +95,8 @@ absl::Status measure_latency(const Scene& scene, const Body& body, const StreamO
     const double latency = ms_since(begin);
     const absl::StatusOr<double> here = in_process.frame_ms(positions, options.view.camera, options.view.size);
     if (!here.ok()) return here.status();
+    // A client has no renderer: this one's threads look for work a while before they sleep.
+    std::this_thread::sleep_for(kPause);
     if (i < 0) continue;
     double encode = 0;
     for (const StageTime& stage : frame->frame.stages) {

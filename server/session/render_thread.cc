@@ -76,7 +76,8 @@ absl::StatusOr<std::shared_ptr<FrameJob>> RenderThread::submit(FrameTask task) {
                               fmt::format("at most {}", options_.max_queued_frames)});
   }
   queued_.push_back(job);
-  changed_.SignalAll();
+  can_draw_.Signal();
+  if (job->expires() != absl::InfiniteFuture()) must_watch_.Signal();
   return job;
 }
 
@@ -86,7 +87,7 @@ void RenderThread::cancel(const std::shared_ptr<FrameJob>& job) {
     absl::MutexLock lock(&mutex_);
     std::erase(queued_, job);
     std::erase(started_, job);
-    changed_.SignalAll();
+    fewer_.Signal();
   }
   job->finish(absl::CancelledError("cancelled by the caller"));
 }
@@ -97,13 +98,14 @@ void RenderThread::stop(absl::Time deadline) {
     absl::MutexLock lock(&mutex_);
     stopping_ = true;
     while (!queued_.empty() || !started_.empty()) {
-      if (changed_.WaitWithDeadline(&mutex_, deadline)) break;
+      if (fewer_.WaitWithDeadline(&mutex_, deadline)) break;
     }
     left = std::exchange(queued_, {});
     left.insert(left.end(), started_.begin(), started_.end());
     started_.clear();
     quit_ = true;
-    changed_.SignalAll();
+    can_draw_.Signal();
+    must_watch_.Signal();
   }
   for (const JobPtr& job : left) {
     job->cancel();
@@ -142,7 +144,7 @@ void RenderThread::recycle_spent(render::FrameRenderer& renderer) {
 
 RenderThread::JobPtr RenderThread::next_job() {
   absl::MutexLock lock(&mutex_);
-  while (!quit_ && (queued_.empty() || encoding_ >= options_.max_encoding_frames)) changed_.Wait(&mutex_);
+  while (!quit_ && (queued_.empty() || encoding_ >= options_.max_encoding_frames)) can_draw_.Wait(&mutex_);
   if (quit_) return nullptr;
   waiting_scenes_.clear();
   for (const JobPtr& waiting : queued_) waiting_scenes_.push_back(&waiting->scene());
@@ -151,7 +153,7 @@ RenderThread::JobPtr RenderThread::next_job() {
   queued_.erase(chosen);
   job->begin();
   started_.push_back(job);
-  changed_.SignalAll();  // its time limit runs
+  if (job->expires() != absl::InfiniteFuture()) must_watch_.Signal();  // its time limit runs
   return job;
 }
 
@@ -161,7 +163,7 @@ void RenderThread::draw(render::FrameRenderer& renderer, const JobPtr& job) {
   if (job->tells_begun()) {
     absl::MutexLock lock(&mutex_);
     begun_.push_back(job);
-    changed_.SignalAll();
+    must_watch_.Signal();
   }
   const absl::Time begin = absl::Now();
   absl::StatusOr<render::Frame> frame =
@@ -196,7 +198,7 @@ void RenderThread::encode_next() {
     absl::MutexLock lock(&mutex_);
     --encoding_;
     keep(std::move(drawn.frame));
-    changed_.SignalAll();
+    can_draw_.Signal();
   }
   if (wanted) end(drawn.job, std::move(encoded));
 }
@@ -205,7 +207,7 @@ void RenderThread::end(const JobPtr& job, absl::StatusOr<EncodedFrame> result) {
   job->finish(std::move(result));
   absl::MutexLock lock(&mutex_);
   std::erase(started_, job);
-  changed_.SignalAll();
+  fewer_.Signal();
 }
 
 void RenderThread::watch() {
@@ -230,10 +232,10 @@ void RenderThread::watch() {
       }
       std::swap(begun, begun_);
       if (expired.empty() && begun.empty()) {
-        changed_.WaitWithDeadline(&mutex_, next);
+        must_watch_.WaitWithDeadline(&mutex_, next);
         continue;
       }
-      if (!expired.empty()) changed_.SignalAll();
+      if (!expired.empty()) fewer_.Signal();
     }
     for (const JobPtr& job : begun) job->tell_begun();
     begun.clear();

@@ -88,7 +88,10 @@ class RenderThread {
   render::RendererInfo info_;
 
   absl::Mutex mutex_;
-  absl::CondVar changed_;  // signalled when anything below changes
+  // One for each thread that waits, so that a frame does not wake those that have nothing to do.
+  absl::CondVar can_draw_;    // the render thread: a job came, or a frame was encoded
+  absl::CondVar must_watch_;  // the watching thread: a job has begun to tell of, or has a time to end at
+  absl::CondVar fewer_;       // stop(): jobs ended
   std::vector<JobPtr> queued_ ABSL_GUARDED_BY(mutex_);
   FairShares shares_ ABSL_GUARDED_BY(mutex_);
   std::vector<JobPtr> started_ ABSL_GUARDED_BY(mutex_);       // drawn or encoded right now, and wanted

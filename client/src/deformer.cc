@@ -97,6 +97,8 @@ class Deformer::Impl {
 
  private:
   static constexpr size_t kMostWaiting = 32;
+  // Of payloads: edits of any size must not pile up.
+  static constexpr size_t kMostWaitingBytes = size_t{64} << 20;
 
   // Fewer bytes travel with their edit.
   static constexpr size_t kInlineBytes = size_t{64} << 10;
@@ -163,7 +165,13 @@ class Deformer::Impl {
     } else {
       write(*call_, last);
     }
-    return waiting_.size() < kMostWaiting ? absl::OkStatus() : wait_until(kMostWaiting / 2);
+    return is_full() ? wait_until(waiting_.size() / 2) : absl::OkStatus();
+  }
+
+  bool is_full() const {
+    size_t bytes = 0;
+    for (const internal::OutgoingEdit& edit : waiting_) bytes += edit.payload_bytes();
+    return waiting_.size() >= kMostWaiting || bytes >= kMostWaitingBytes;
   }
 
   /// Reads until at most `most` edits are not known to be applied.

@@ -27,6 +27,12 @@ std::shared_ptr<std::string> PayloadPool::take(size_t count) {
           }};
 }
 
+size_t OutgoingEdit::payload_bytes() const {
+  size_t bytes = 0;
+  for (const auto& payload : payloads) bytes += payload->size();
+  return bytes;
+}
+
 bool write(EditCall& call, const OutgoingEdit& edit) {
   if (!call.write(edit.request)) return false;
   for (const auto& payload : edit.payloads) {

@@ -32,6 +32,7 @@ struct OutgoingEdit {
   std::vector<std::shared_ptr<std::string>> payloads;
 
   uint64_t sequence() const { return request->edit().sequence(); }
+  size_t payload_bytes() const;
 };
 
 /// Makes bytes `first` to before `first` + `count` of a payload at `to`; both are multiples of 12.

@@ -4,6 +4,7 @@
 #include <ImfArray.h>
 #include <ImfRgbaFile.h>
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -16,9 +17,13 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 absl::StatusOr<EnvironmentMap> read_map(const std::string& name, const std::string& bytes) {
-  const auto path = std::filesystem::path(::testing::TempDir()) / name;
-  std::ofstream(path, std::ios::binary) << bytes;
-  return read_environment_file(path);
+  // Of this process alone: tests run beside each other.
+  const auto folder = std::filesystem::path(::testing::TempDir()) / ("diaphane_maps_" + std::to_string(getpid()));
+  std::filesystem::create_directory(folder);
+  std::ofstream(folder / name, std::ios::binary) << bytes;
+  auto map = read_environment_file(folder / name);
+  std::filesystem::remove_all(folder);
+  return map;
 }
 
 std::string hdr(const std::string& pixels, const std::string& size = "-Y 1 +X 2", const std::string& variables = "") {

@@ -1,6 +1,7 @@
 #include "connection.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <random>
 
@@ -21,10 +22,16 @@ grpc::ChannelArguments channel_arguments() {
   arguments.SetInt(GRPC_ARG_ENABLE_RETRIES, 0);                      // run_with_retries knows what may be repeated
   arguments.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, 4 << 20);  // a frame comes whole
   arguments.SetInt(GRPC_ARG_HTTP2_MAX_FRAME_SIZE, 1 << 20);
+  arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
   arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1'000);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1'000);
   return arguments;
+}
+
+bool is_local_address(std::string_view address) {
+  constexpr std::array<std::string_view, 4> kLocal = {"unix:", "127.", "localhost:", "[::1]:"};
+  return std::any_of(kLocal.begin(), kLocal.end(), [&](std::string_view local) { return address.starts_with(local); });
 }
 
 }  // namespace
@@ -48,7 +55,7 @@ std::shared_ptr<grpc::Channel> make_channel(const std::string& address) {
 }
 
 Connection::Connection(const std::string& address, ClientOptions options)
-    : options_(std::move(options)), channel_(make_channel(address)) {
+    : options_(std::move(options)), is_local_(is_local_address(address)), channel_(make_channel(address)) {
   scene_service_ = v1::SceneService::NewStub(channel_);
   render_service_ = v1::RenderService::NewStub(channel_);
   server_service_ = v1::ServerService::NewStub(channel_);

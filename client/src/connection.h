@@ -32,6 +32,8 @@ class Connection {
   Connection(const std::string& address, ClientOptions options);
 
   const std::shared_ptr<grpc::Channel>& channel() const { return channel_; }
+  /// Whether the address says that the server is a process of this machine, or something here that leads to it.
+  bool is_local() const { return is_local_; }
   const std::unique_ptr<SceneStub>& scene_service() const { return scene_service_; }
   const std::unique_ptr<RenderStub>& render_service() const { return render_service_; }
   const std::unique_ptr<ServerStub>& server_service() const { return server_service_; }
@@ -57,6 +59,7 @@ class Connection {
 
  private:
   ClientOptions options_;
+  bool is_local_;
   std::shared_ptr<grpc::Channel> channel_;
   std::unique_ptr<SceneStub> scene_service_;
   std::unique_ptr<RenderStub> render_service_;

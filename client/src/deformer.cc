@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 #include <deque>
 #include <memory>
@@ -120,34 +121,37 @@ class Deformer::Impl {
   }
 
   /// Positions whose bytes are made.
-  absl::Status add_bytes(v1::SceneChange change, std::string bytes) {
+  absl::Status add_bytes(v1::SceneChange change, const std::string& bytes) {
+    return add_filling(std::move(change), bytes.size(),
+                       [&](char* to, size_t first, size_t count) { std::memcpy(to, bytes.data() + first, count); });
+  }
+
+  /// Those whose bytes `fill` makes.
+  absl::Status add_filling(v1::SceneChange change, size_t count, internal::FillPayload fill) {
     v1::VertexPositions& positions = *change.mutable_positions();
-    if (bytes.size() <= kInlineBytes) {
-      (positions.has_quantized() ? *positions.mutable_quantized()->mutable_uint16() : *positions.mutable_float32()) =
-          std::move(bytes);
+    if (count <= kInlineBytes) {
+      std::string& bytes =
+          positions.has_quantized() ? *positions.mutable_quantized()->mutable_uint16() : *positions.mutable_float32();
+      bytes.resize(count);
+      fill(bytes.data(), 0, count);
       return add(std::move(change));
     }
-    positions.set_payload_bytes(bytes.size());
-    auto payload = std::make_shared<std::string>(std::move(bytes));
+    internal::PayloadPtr payload = call_.has_value() ? call_->take_shared(count) : nullptr;
+    if (payload != nullptr) {
+      positions.mutable_shared()->set_memory(payload->shared->id());
+      positions.mutable_shared()->set_offset(payload->offset);
+      positions.mutable_shared()->set_bytes(count);
+    } else {
+      positions.set_payload_bytes(count);
+      payload = payloads_.take(count);
+    }
     if (group_.has_value()) {
+      fill(payload->bytes.data(), 0, count);
       group_->payloads.push_back(std::move(payload));
       return add(std::move(change));
     }
     internal::OutgoingEdit edit = edit_of(std::move(change));
     edit.payloads.push_back(std::move(payload));
-    return send(std::move(edit), std::nullopt);
-  }
-
-  /// Those whose bytes `fill` makes.
-  absl::Status add_filling(v1::SceneChange change, size_t count, internal::FillPayload fill) {
-    if (count <= kInlineBytes || group_.has_value()) {
-      std::string bytes(count, '\0');
-      fill(bytes.data(), 0, count);
-      return add_bytes(std::move(change), std::move(bytes));
-    }
-    change.mutable_positions()->set_payload_bytes(count);
-    internal::OutgoingEdit edit = edit_of(std::move(change));
-    edit.payloads.push_back(payloads_.take(count));
     return send(std::move(edit), fill);
   }
 
@@ -156,9 +160,10 @@ class Deformer::Impl {
     edit.request->mutable_edit()->set_sequence(++sequence_);
     waiting_.push_back(std::move(edit));
     // What is lost with a call that breaks is written again to the next.
-    const internal::OutgoingEdit& last = waiting_.back();
+    internal::OutgoingEdit& last = waiting_.back();
+    if (call_.has_value()) last.unshare_but_with(*call_);
     if (!call_.has_value()) {
-      if (fill.has_value()) (*fill)(last.payloads.front()->data(), 0, last.payloads.front()->size());
+      if (fill.has_value()) (*fill)(last.payloads.front()->bytes.data(), 0, last.payload_bytes());
       open();
     } else if (fill.has_value()) {
       write_filling(*call_, last, *fill);
@@ -196,12 +201,16 @@ class Deformer::Impl {
 
   /// And writes all that waits.
   void open() {
-    call_.emplace(connection_->channel());
+    call_.emplace(connection_->channel(), options_.share_memory && connection_->is_local());
     auto request = std::make_shared<v1::EditSceneRequest>();
     request->mutable_opening()->set_scene(scene_);
     request->mutable_opening()->set_editor_id(id_);
     call_->write(request);
-    for (const internal::OutgoingEdit& waiting : waiting_) {
+    size_t longest = 0;
+    for (const internal::OutgoingEdit& waiting : waiting_) longest = std::max(longest, waiting.longest_payload());
+    call_->ask_for_shared(longest);
+    for (internal::OutgoingEdit& waiting : waiting_) {
+      waiting.unshare_but_with(*call_);
       if (!write(*call_, waiting)) return;  // the next read says why
     }
   }

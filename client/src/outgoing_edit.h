@@ -3,36 +3,25 @@
 
 #include <cstddef>
 #include <memory>
-#include <mutex>
-#include <string>
 #include <vector>
 
 #include "absl/functional/function_ref.h"
 #include "edit_call.h"
+#include "payload_memory.h"
 
 namespace diaphane::internal {
 
-/// Memory of payloads, used again once nobody reads it any more. Thread-safe.
-class PayloadPool {
- public:
-  /// `count` bytes of no particular value.
-  std::shared_ptr<std::string> take(size_t count);
-
- private:
-  struct Spare {
-    std::mutex mutex;
-    std::unique_ptr<std::string> bytes;  ///< null: none
-  };
-  const std::shared_ptr<Spare> spare_ = std::make_shared<Spare>();
-};
-
-/// An edit, and the bytes that follow it, of its changes in order. Neither changes once it is written.
+/// An edit, and the bytes of its changes in order that follow it, or lie in shared memory. Neither changes once it is
+/// written.
 struct OutgoingEdit {
   std::shared_ptr<v1::EditSceneRequest> request = std::make_shared<v1::EditSceneRequest>();
-  std::vector<std::shared_ptr<std::string>> payloads;
+  std::vector<PayloadPtr> payloads;  ///< some of them shared with the call that it is written to first
 
   uint64_t sequence() const { return request->edit().sequence(); }
   size_t payload_bytes() const;
+  size_t longest_payload() const;
+  /// Makes payloads that follow of those that are not shared with `call`.
+  void unshare_but_with(const EditCall& call);
 };
 
 /// Makes bytes `first` to before `first` + `count` of a payload at `to`; both are multiples of 12.

@@ -15,8 +15,12 @@ constexpr size_t kMostPayloadBytes = size_t{1} << 20;
 
 }  // namespace
 
-EditStream::EditStream(scene::SceneStore& store, Editors& editors, OpenStreams& open_streams)
-    : store_(store), editors_(editors), open_streams_(open_streams) {
+EditStream::EditStream(scene::SceneStore& store, Editors& editors, OpenStreams& open_streams,
+                       SharedBufferCount& shared_buffers, std::string_view peer)
+    : store_(store),
+      editors_(editors),
+      open_streams_(open_streams),
+      shared_buffers_(store, shared_buffers, is_on_this_machine(peer)) {
   id_ = open_streams_.add([this] {
     const absl::MutexLock lock(&mutex_);
     if (!ending_.has_value()) ending_ = absl::UnavailableError("the server is stopping");
@@ -58,14 +62,16 @@ void EditStream::OnCancel() {
 absl::Status EditStream::take(const v1::EditSceneRequest& request) {
   if (request.has_opening()) return open(request.opening());
   if (scene_.empty()) return base::invalid_field("part", "an opening first", "none");
-  const bool is_payload = request.part_case() == v1::EditSceneRequest::kPayload;
-  if (!is_payload && !request.has_edit()) return base::invalid_field("part", "an edit or payload", "nothing");
+  const auto part = request.part_case();
+  if (part == v1::EditSceneRequest::PART_NOT_SET) return base::invalid_field("part", "an edit or payload", "nothing");
+  const bool is_payload = part == v1::EditSceneRequest::kPayload;
   if (is_payload != edit_.has_value()) {
     const uint64_t bytes = edit_.has_value() ? edit_->reader.bytes_to_come() : 0;
     return base::invalid_field("part", bytes > 0 ? fmt::format("payload, {} more bytes", bytes) : "an edit",
-                               is_payload ? "payload" : "an edit");
+                               is_payload ? "payload" : "something else");
   }
   try {
+    if (part == v1::EditSceneRequest::kSharedMemoryBytes) return share(request.shared_memory_bytes());
     return is_payload ? take_payload(request.payload()) : begin(request.edit());
   } catch (const std::bad_alloc&) {
     return absl::ResourceExhaustedError("out of memory");
@@ -92,10 +98,21 @@ absl::Status EditStream::begin(const v1::SceneEdit& edit) {
   }
   absl::StatusOr<scene::Reservation> memory = store_.reserve(decoded_bytes(edit));
   if (!memory.ok()) return memory.status();
-  absl::StatusOr<EditReader> reader = EditReader::begin(edit);
+  absl::StatusOr<EditReader> reader =
+      EditReader::begin(edit, [&](const v1::SharedBytes& named) { return shared_buffers_.find(named); });
   if (!reader.ok()) return reader.status();
   edit_.emplace(Edit{edit.sequence(), *std::move(memory), *std::move(reader)});
   return edit_->reader.bytes_to_come() > 0 ? absl::OkStatus() : apply();
+}
+
+absl::Status EditStream::share(uint64_t bytes) {
+  const absl::StatusOr<std::optional<v1::SharedMemory>> offer = shared_buffers_.share(bytes);
+  if (!offer.ok()) return offer.status();
+  if (!offer->has_value()) return absl::OkStatus();
+  const absl::MutexLock lock(&mutex_);
+  offers_.push_back(**offer);
+  if (!writing_) acknowledge();
+  return absl::OkStatus();
 }
 
 absl::Status EditStream::take_payload(const std::string& bytes) {
@@ -127,11 +144,15 @@ absl::Status EditStream::apply() {
 /// Tells what is applied and was not told, or ends.
 void EditStream::acknowledge() {
   if (finished_) return;
-  if (applied_.scene_revision() == told_) {
+  if (applied_.scene_revision() == told_ && offers_.empty()) {
     if (ending_.has_value()) finish(*ending_);
     return;
   }
   message_ = applied_;
+  if (!offers_.empty()) {
+    *message_.mutable_shared_memory() = offers_.front();
+    offers_.erase(offers_.begin());
+  }
   told_ = applied_.scene_revision();
   writing_ = true;
   StartWrite(&message_);

@@ -4,6 +4,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
@@ -12,6 +14,7 @@
 #include "service/convert/edit.h"
 #include "service/editors.h"
 #include "service/open_streams.h"
+#include "service/shared_buffers.h"
 
 namespace diaphane::service {
 
@@ -19,7 +22,9 @@ namespace diaphane::service {
 /// held back by its own stream. Finishes exactly once. Deletes itself.
 class EditStream final : public grpc::ServerBidiReactor<v1::EditSceneRequest, v1::EditSceneResponse> {
  public:
-  EditStream(scene::SceneStore& store, Editors& editors, OpenStreams& open_streams);
+  /// `peer` as gRPC names it.
+  EditStream(scene::SceneStore& store, Editors& editors, OpenStreams& open_streams, SharedBufferCount& shared_buffers,
+             std::string_view peer);
 
   void OnReadDone(bool ok) override;
   void OnWriteDone(bool ok) override;
@@ -30,6 +35,7 @@ class EditStream final : public grpc::ServerBidiReactor<v1::EditSceneRequest, v1
   absl::Status take(const v1::EditSceneRequest& request);
   absl::Status open(const v1::EditOpening& opening);
   absl::Status begin(const v1::SceneEdit& edit);
+  absl::Status share(uint64_t bytes);
   absl::Status take_payload(const std::string& bytes);
   /// What has come whole.
   absl::Status apply();
@@ -52,11 +58,13 @@ class EditStream final : public grpc::ServerBidiReactor<v1::EditSceneRequest, v1
     EditReader reader;
   };
   std::optional<Edit> edit_;  ///< whose payload has not come whole
+  SharedBuffers shared_buffers_;
 
   absl::Mutex mutex_;
   v1::EditSceneResponse applied_ ABSL_GUARDED_BY(mutex_);
-  v1::EditSceneResponse message_;              ///< being written
-  uint64_t told_ ABSL_GUARDED_BY(mutex_) = 0;  ///< revision
+  std::vector<v1::SharedMemory> offers_ ABSL_GUARDED_BY(mutex_);  ///< not told
+  v1::EditSceneResponse message_;                                 ///< being written
+  uint64_t told_ ABSL_GUARDED_BY(mutex_) = 0;                     ///< revision
   bool writing_ ABSL_GUARDED_BY(mutex_) = false;
   std::optional<absl::Status> ending_ ABSL_GUARDED_BY(mutex_);
   bool finished_ ABSL_GUARDED_BY(mutex_) = false;

@@ -7,6 +7,7 @@
 #include "service/limits.h"
 #include "service/open_streams.h"
 #include "service/reply_memory.h"
+#include "service/shared_buffers.h"
 
 namespace diaphane::service {
 
@@ -71,6 +72,7 @@ class SceneService final : public v1::SceneService::CallbackService {
   scene::SceneStore& store_;
   base::WorkerPool& workers_;
   Editors editors_;
+  SharedBufferCount shared_buffers_;
   OpenStreams& open_streams_;
   ReplyMemory replies_;
 };

@@ -198,7 +198,7 @@ void RenderThread::encode_next() {
     absl::MutexLock lock(&mutex_);
     --encoding_;
     keep(std::move(drawn.frame));
-    can_draw_.Signal();
+    if (!queued_.empty()) can_draw_.Signal();
   }
   if (wanted) end(drawn.job, std::move(encoded));
 }

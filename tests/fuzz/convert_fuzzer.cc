@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "diaphane/v1/render_service.pb.h"
 #include "diaphane/v1/scene_service.pb.h"
+#include "fmt/format.h"
 #include "geometry/topology.h"
 #include "glm/matrix.hpp"
 #include "service/convert/edit.h"
@@ -152,19 +153,29 @@ bool feed(Reader& reader, std::string_view bytes) {
   return true;
 }
 
+/// Of the same bytes, where they hold what is named.
+absl::StatusOr<std::string_view> shared_bytes(std::string_view bytes, const v1::SharedBytes& named) {
+  if (named.offset() > bytes.size() || named.bytes() > bytes.size() - named.offset()) {
+    return base::invalid_field("shared.bytes", fmt::format("within {} bytes", bytes.size()), "others");
+  }
+  return bytes.substr(named.offset(), named.bytes());
+}
+
 void convert(const v1::VertexPositions& request, std::string_view bytes) {
   if (service::decoded_bytes(request) > kMostDecodedBytes) return;
-  auto reader = service::PositionsReader::begin(request);
+  const auto find_shared = [&](const v1::SharedBytes& named) { return shared_bytes(bytes, named); };
+  auto reader = service::PositionsReader::begin(request, find_shared);
   if (!is_accepted(reader) || !feed(*reader, bytes)) return;
   const scene::PositionsPatch patch = reader->finish();
   check_positions(patch);
-  if (request.meshopt_count() == 0 && request.payload_bytes() == 0) return;
+  if (request.meshopt_count() == 0 && request.payload_bytes() == 0 && !request.has_shared()) return;
   require(patch.positions.size() * sizeof(glm::vec3) <= service::decoded_bytes(request), "the memory that was told");
 }
 
 void convert(const v1::SceneEdit& request, std::string_view bytes) {
   if (service::decoded_bytes(request) > kMostDecodedBytes) return;
-  auto reader = service::EditReader::begin(request);
+  const auto find_shared = [&](const v1::SharedBytes& named) { return shared_bytes(bytes, named); };
+  auto reader = service::EditReader::begin(request, find_shared);
   if (!is_accepted(reader) || !feed(*reader, bytes)) return;
   const std::vector<scene::SceneChange> made = reader->finish();
   require(!made.empty() && made.size() == static_cast<size_t>(request.changes_size()), "every change");

@@ -33,12 +33,13 @@ int listen_on_any_port() {
   return listener;
 }
 
-/// Carries bytes until either side ends, and then ends both.
-void carry(int from, int to, const std::atomic<bool>* muted) {
+/// Carries bytes, and counts them, until either side ends, and then ends both.
+void carry(int from, int to, const std::atomic<bool>* muted, std::atomic<uint64_t>& count) {
   std::array<char, 1 << 14> bytes;
   while (true) {
     const ssize_t got = read(from, bytes.data(), bytes.size());
     if (got <= 0) break;
+    count += static_cast<uint64_t>(got);
     ssize_t sent = muted != nullptr && *muted ? got : 0;
     while (sent < got) {
       const ssize_t more = send(to, bytes.data() + sent, static_cast<size_t>(got - sent), MSG_NOSIGNAL);
@@ -107,8 +108,11 @@ void Relay::accept_all() {
     // A server that is not there: both threads end at once.
     if (connect(connection->server, as_address(address), sizeof address) != 0) shutdown(client, SHUT_RDWR);
     Connection* c = connection.get();
-    c->there = std::thread([c] { carry(c->client, c->server, nullptr); });
-    c->back = std::thread([c] { carry(c->server, c->client, &c->muted); });
+    c->there = std::thread([this, c] { carry(c->client, c->server, nullptr, bytes_there_); });
+    c->back = std::thread([c] {
+      std::atomic<uint64_t> bytes_back = 0;
+      carry(c->server, c->client, &c->muted, bytes_back);
+    });
     const std::lock_guard lock(mutex_);
     connections_.push_back(std::move(connection));
   }

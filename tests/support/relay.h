@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -21,6 +22,9 @@ class Relay {
 
   std::string address() const;
 
+  /// Carried to the server so far.
+  uint64_t bytes_there() const { return bytes_there_; }
+
   /// Lets nothing more come back over the connections that are open.
   void mute();
 
@@ -38,6 +42,7 @@ class Relay {
 
   const int port_;
   const int listener_;
+  std::atomic<uint64_t> bytes_there_ = 0;
   std::mutex mutex_;
   std::vector<std::unique_ptr<Connection>> connections_;
   std::thread acceptor_;

@@ -84,6 +84,9 @@ class FrameStream {
 struct DeformerOptions {
   /// Positions go through meshoptimizer's codec: docs/streaming.md has what that saves and costs.
   bool compress = false;
+  /// Long positions go to a server of the same user on this machine through memory that both share, not through the
+  /// connection: see docs/streaming.md. Nothing else changes, and elsewhere nothing at all.
+  bool share_memory = true;
 };
 
 /// Live changes of a scene, in order. Calls return once a change is sent, and wait only while too many are not applied;

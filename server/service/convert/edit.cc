@@ -65,7 +65,7 @@ absl::StatusOr<scene::SceneChange> from_proto(const v1::SceneChange& message) {
 
 }  // namespace
 
-absl::StatusOr<EditReader> EditReader::begin(const v1::SceneEdit& message) {
+absl::StatusOr<EditReader> EditReader::begin(const v1::SceneEdit& message, FindShared find_shared) {
   if (message.changes_size() < 1 || message.changes_size() > kMostChanges) {
     return base::invalid_field("changes", fmt::format("1..{}", kMostChanges), message.changes_size());
   }
@@ -81,7 +81,7 @@ absl::StatusOr<EditReader> EditReader::begin(const v1::SceneEdit& message) {
       reader.changes_.push_back(*std::move(read));
       continue;
     }
-    absl::StatusOr<PositionsReader> positions = PositionsReader::begin(change.positions());
+    absl::StatusOr<PositionsReader> positions = PositionsReader::begin(change.positions(), find_shared);
     if (!positions.ok()) return within(positions.status());
     scene::SceneChange& made = reader.changes_.emplace_back(change.positions().mesh(), scene::PositionsPatch{});
     if (positions->bytes_to_come() == 0) {

@@ -17,7 +17,8 @@ namespace diaphane::service {
 /// "payload". One thread.
 class EditReader {
  public:
-  static absl::StatusOr<EditReader> begin(const v1::SceneEdit& message);
+  /// `find_shared` is for now alone.
+  static absl::StatusOr<EditReader> begin(const v1::SceneEdit& message, FindShared find_shared);
 
   /// Of all payloads; 0 where all came with the edit.
   uint64_t bytes_to_come() const;

@@ -1,6 +1,7 @@
 #include "service/convert/vertex_positions.h"
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <utility>
 #include <vector>
@@ -38,10 +39,12 @@ std::string_view inline_bytes(const v1::VertexPositions& message) {
 }
 
 uint64_t size_in_bytes(const v1::VertexPositions& message) {
+  if (message.has_shared()) return message.shared().bytes();
   return message.payload_bytes() != 0 ? message.payload_bytes() : inline_bytes(message).size();
 }
 
 std::string_view field_of(const v1::VertexPositions& message) {
+  if (message.has_shared()) return "positions.shared.bytes";
   if (message.payload_bytes() != 0) return "positions.payload_bytes";
   return message.has_quantized() ? "positions.quantized.uint16" : "positions.float32";
 }
@@ -96,9 +99,12 @@ glm::vec3 in_box(const Steps& steps, const glm::vec3& lowest, const glm::vec3& h
   return lowest * (1.f - share) + highest * share;
 }
 
+// So much is copied, and looked at while it is near.
+constexpr size_t kAtOnce = 2048;
+
 }  // namespace
 
-absl::StatusOr<PositionsReader> PositionsReader::begin(const v1::VertexPositions& message) {
+absl::StatusOr<PositionsReader> PositionsReader::begin(const v1::VertexPositions& message, FindShared find_shared) {
   PositionsReader reader;
   reader.quantized_ = message.has_quantized();
   if (reader.quantized_) {
@@ -111,9 +117,12 @@ absl::StatusOr<PositionsReader> PositionsReader::begin(const v1::VertexPositions
   } else if (message.values_case() != v1::VertexPositions::kFloat32) {
     return base::invalid_field("positions.values", "float32 or quantized", "none");
   }
-  if (message.payload_bytes() != 0 && !inline_bytes(message).empty()) {
-    return base::invalid_field("positions.payload_bytes", "0 with bytes in the message",
+  if (message.payload_bytes() != 0 && (message.has_shared() || !inline_bytes(message).empty())) {
+    return base::invalid_field("positions.payload_bytes", "0 with bytes that are here",
                                fmt::format("{}", message.payload_bytes()));
+  }
+  if (message.has_shared() && !inline_bytes(message).empty()) {
+    return base::invalid_field("positions.shared", "unset with bytes in the message", "set");
   }
   reader.coded_count_ = message.meshopt_count();
   const absl::Status size = reader.coded_count_ == 0 ? check_plain_size(message) : check_coded_count(message);
@@ -121,6 +130,15 @@ absl::StatusOr<PositionsReader> PositionsReader::begin(const v1::VertexPositions
   reader.patch_.indices.assign(message.indices().begin(), message.indices().end());
   reader.patch_.displacements = message.displacements();
   reader.bytes_to_come_ = message.payload_bytes();
+  if (message.has_shared()) {
+    const absl::StatusOr<std::string_view> bytes = find_shared(message.shared());
+    if (!bytes.ok()) return base::within("positions.", bytes.status());
+    // The codec may look at bytes twice.
+    if (reader.coded_count_ != 0) reader.coded_ = *bytes;
+    const absl::Status taken = reader.take(reader.coded_count_ != 0 ? reader.coded_ : *bytes);
+    if (!taken.ok()) return taken;
+    return reader;
+  }
   if (reader.bytes_to_come_ == 0) {
     if (absl::Status taken = reader.take(inline_bytes(message)); !taken.ok()) return taken;
     return reader;
@@ -150,7 +168,7 @@ absl::Status PositionsReader::take(std::string_view bytes) {
   std::vector<glm::vec3>& positions = patch_.positions;
   if (quantized_) {
     if (coded_count_ == 0) {
-      take_steps(reinterpret_cast<const Steps*>(bytes.data()), bytes.size() / sizeof(Steps));
+      take_steps({reinterpret_cast<const Steps*>(bytes.data()), bytes.size() / sizeof(Steps)});
       return absl::OkStatus();
     }
     const auto steps = decoded<PaddedSteps>(kSteps, bytes, coded_count_);
@@ -159,31 +177,44 @@ absl::Status PositionsReader::take(std::string_view bytes) {
     for (const PaddedSteps& s : *steps) positions.push_back(in_box(Steps(s), lowest_, highest_));
     return absl::OkStatus();
   }
-  const size_t before = positions.size();
   if (coded_count_ != 0) {
     auto coded = decoded<glm::vec3>(kFloats, bytes, coded_count_);
     if (!coded.ok()) return coded.status();
     positions = *std::move(coded);
-  } else {
-    // Copied once, into memory that nothing wrote before; a string's bytes are aligned for more than this.
-    const auto* first = reinterpret_cast<const glm::vec3*>(bytes.data());
-    positions.insert(positions.end(), first, first + bytes.size() / sizeof(glm::vec3));
+    return geometry::check_finite(positions, kFloats);
   }
-  const auto added = std::span<const glm::vec3>(positions).subspan(before);
-  if (geometry::check_finite(added, kFloats).ok()) return absl::OkStatus();
-  return geometry::check_finite(positions, kFloats);
+  return take_floats({reinterpret_cast<const glm::vec3*>(bytes.data()), bytes.size() / sizeof(glm::vec3)});
 }
 
-void PositionsReader::take_steps(const Steps* steps, size_t count) {
-  const size_t before = patch_.positions.size();
-  patch_.positions.resize(before + count);
-  for (size_t i = 0; i < count; ++i) patch_.positions[before + i] = in_box(steps[i], lowest_, highest_);
+/// Each is copied once, into memory that nothing wrote before, and it is the copy that is checked.
+absl::Status PositionsReader::take_floats(std::span<const glm::vec3> values) {
+  std::vector<glm::vec3>& positions = patch_.positions;
+  positions.reserve(positions.size() + values.size());
+  bool finite = true;
+  for (size_t first = 0; first < values.size(); first += kAtOnce) {
+    const auto some = values.subspan(first, std::min(kAtOnce, values.size() - first));
+    positions.insert(positions.end(), some.begin(), some.end());
+    finite &= geometry::check_finite(std::span(positions).last(some.size()), kFloats).ok();
+  }
+  return finite ? absl::OkStatus() : geometry::check_finite(positions, kFloats);
+}
+
+void PositionsReader::take_steps(std::span<const Steps> steps) {
+  std::array<glm::vec3, kAtOnce> values;
+  patch_.positions.reserve(patch_.positions.size() + steps.size());
+  for (size_t first = 0; first < steps.size(); first += kAtOnce) {
+    const auto some = steps.subspan(first, std::min(kAtOnce, steps.size() - first));
+    std::transform(some.begin(), some.end(), values.begin(),
+                   [&](const Steps& s) { return in_box(s, lowest_, highest_); });
+    patch_.positions.insert(patch_.positions.end(), values.begin(),
+                            values.begin() + static_cast<ptrdiff_t>(some.size()));
+  }
 }
 
 uint64_t decoded_bytes(const v1::VertexPositions& message) {
   const uint64_t each = bytes_of_one(message), bytes = size_in_bytes(message);
   const uint64_t count = message.meshopt_count();
-  const uint64_t payload = message.payload_bytes();
+  const uint64_t payload = message.has_shared() ? bytes : message.payload_bytes();
   if (count == 0) return payload / each * sizeof(glm::vec3);
   if (count > most_elements(bytes, each)) return 0;
   return payload + count * (message.has_quantized() ? each + sizeof(glm::vec3) : each);

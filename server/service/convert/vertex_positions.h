@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "absl/functional/function_ref.h"
 #include "absl/status/statusor.h"
 #include "diaphane/v1/scene_service.pb.h"
 #include "glm/vec3.hpp"
@@ -13,11 +15,16 @@
 
 namespace diaphane::service {
 
-/// Positions as their bytes come: plain, quantised or compressed, with their message or after it. What is decoded is
+/// The bytes that a message means; they may change while they are read. Errors name the field, from "shared" on.
+using FindShared = absl::FunctionRef<absl::StatusOr<std::string_view>(const v1::SharedBytes&)>;
+
+/// Positions as their bytes come: plain, quantised or compressed, with their message, after it or in shared
+/// memory. What is decoded is
 /// bounded by decoded_bytes(). Errors name the field, from "positions" on. One thread.
 class PositionsReader {
  public:
-  static absl::StatusOr<PositionsReader> begin(const v1::VertexPositions& message);
+  /// `find_shared` is for now alone.
+  static absl::StatusOr<PositionsReader> begin(const v1::VertexPositions& message, FindShared find_shared);
 
   /// Of the payload; 0 where all came with the message.
   uint64_t bytes_to_come() const { return bytes_to_come_; }
@@ -29,7 +36,8 @@ class PositionsReader {
  private:
   PositionsReader() = default;
   absl::Status take(std::string_view bytes);
-  void take_steps(const glm::vec<3, uint16_t>* steps, size_t count);
+  absl::Status take_floats(std::span<const glm::vec3> values);
+  void take_steps(std::span<const glm::vec<3, uint16_t>> steps);
 
   scene::PositionsPatch patch_;
   bool quantized_ = false;

@@ -52,6 +52,9 @@ class Deformer::Impl {
     if (options_.compress && !values.empty()) {
       return add_bytes(std::move(change), compressed(values.data(), values.size(), sizeof(Vec3), positions));
     }
+    if (lent_ != nullptr && lent_->bytes.data() == bytes && lent_->bytes.size() == values.size_bytes()) {
+      return add_payload(std::move(change), std::exchange(lent_, nullptr), std::nullopt);
+    }
     return add_filling(std::move(change), values.size_bytes(),
                        [&](char* to, size_t first, size_t count) { std::memcpy(to, bytes + first, count); });
   }
@@ -74,6 +77,11 @@ class Deformer::Impl {
       internal::steps_in_box(values.subspan(first / kEach, count / kEach), lowest, highest, 3,
                              reinterpret_cast<uint16_t*>(to));
     });
+  }
+
+  std::span<Vec3> positions_buffer(size_t count) {
+    lent_ = take_memory(count * sizeof(Vec3));
+    return {reinterpret_cast<Vec3*>(lent_->bytes.data()), count};
   }
 
   void begin() { group_.emplace(); }
@@ -136,17 +144,20 @@ class Deformer::Impl {
       fill(bytes.data(), 0, count);
       return add(std::move(change));
     }
+    return add_payload(std::move(change), take_memory(count), fill);
+  }
+
+  internal::PayloadPtr take_memory(size_t count) {
     internal::PayloadPtr payload = call_.has_value() ? call_->take_shared(count) : nullptr;
-    if (payload != nullptr) {
-      positions.mutable_shared()->set_memory(payload->shared->id());
-      positions.mutable_shared()->set_offset(payload->offset);
-      positions.mutable_shared()->set_bytes(count);
-    } else {
-      positions.set_payload_bytes(count);
-      payload = payloads_.take(count);
-    }
+    return payload != nullptr ? payload : payloads_.take(count);
+  }
+
+  /// Those whose bytes are there, or `fill` makes.
+  absl::Status add_payload(v1::SceneChange change, internal::PayloadPtr payload,
+                           std::optional<internal::FillPayload> fill) {
+    internal::announce(*payload, *change.mutable_positions());
     if (group_.has_value()) {
-      fill(payload->bytes.data(), 0, count);
+      if (fill.has_value()) (*fill)(payload->bytes.data(), 0, payload->bytes.size());
       group_->payloads.push_back(std::move(payload));
       return add(std::move(change));
     }
@@ -224,6 +235,7 @@ class Deformer::Impl {
   uint64_t revision_ = 0;
   std::deque<internal::OutgoingEdit> waiting_;  // sent, and not known to be applied
   internal::PayloadPool payloads_;
+  internal::PayloadPtr lent_;    // by positions_buffer()
   std::vector<uint16_t> steps_;  // before they are compressed
   std::optional<internal::OutgoingEdit> group_;
   absl::Status failed_;
@@ -234,6 +246,8 @@ Deformer::Deformer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Deformer::Deformer(Deformer&&) noexcept = default;
 Deformer& Deformer::operator=(Deformer&&) noexcept = default;
 Deformer::~Deformer() = default;
+
+std::span<Vec3> Deformer::positions_buffer(size_t count) { return impl_->positions_buffer(count); }
 
 absl::Status Deformer::set_positions(const MeshHandle& mesh, std::span<const Vec3> positions) {
   return impl_->add_floats(change_of(mesh, {}), positions);

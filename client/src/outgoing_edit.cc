@@ -12,6 +12,13 @@ constexpr size_t kPieceBytes = 12 * 65536;
 
 }  // namespace
 
+void announce(const PayloadBytes& payload, v1::VertexPositions& positions) {
+  if (payload.shared == nullptr) return positions.set_payload_bytes(payload.bytes.size());
+  positions.mutable_shared()->set_memory(payload.shared->id());
+  positions.mutable_shared()->set_offset(payload.offset);
+  positions.mutable_shared()->set_bytes(payload.bytes.size());
+}
+
 size_t OutgoingEdit::payload_bytes() const {
   size_t bytes = 0;
   for (const auto& payload : payloads) bytes += payload->bytes.size();

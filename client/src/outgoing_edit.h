@@ -24,6 +24,9 @@ struct OutgoingEdit {
   void unshare_but_with(const EditCall& call);
 };
 
+/// Says in `positions` where its bytes are.
+void announce(const PayloadBytes& payload, v1::VertexPositions& positions);
+
 /// Makes bytes `first` to before `first` + `count` of a payload at `to`; both are multiples of 12.
 using FillPayload = absl::FunctionRef<void(char* to, size_t first, size_t count)>;
 

@@ -100,11 +100,11 @@ bool encloses_volume(const MeshTopology& mesh) {
 absl::Status check_finite(std::span<const glm::vec3> values, std::string_view field) {
   // All at once first: edits come by the hundred thousand positions. Magnitudes order like their bits, NaN above all.
   if (values.empty()) return absl::OkStatus();
-  int32_t largest = 0;
+  int32_t beyond = 0;
   for (const float value : std::span(&values.front().x, 3 * values.size())) {
-    largest = std::max(largest, std::bit_cast<int32_t>(value) & 0x7fffffff);
+    beyond |= (std::bit_cast<int32_t>(value) & 0x7fffffff) > std::bit_cast<int32_t>(kLargestCoordinate) ? -1 : 0;
   }
-  if (largest <= std::bit_cast<int32_t>(kLargestCoordinate)) return absl::OkStatus();
+  if (beyond == 0) return absl::OkStatus();
   for (size_t i = 0; i < values.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       // Written so that NaN fails too.

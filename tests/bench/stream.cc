@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fstream>
 #include <map>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -54,7 +55,7 @@ struct Body {
   Bounds bounds;
   bool quantized = false;
 
-  absl::Status send(Deformer& deformer, const std::vector<Vec3>& positions) const {
+  absl::Status send(Deformer& deformer, std::span<const Vec3> positions) const {
     if (!quantized) return deformer.set_positions(handle, positions);
     const float reach = 0.1f * (bounds.highest.y - bounds.lowest.y);
     return deformer.set_quantized_positions(handle, positions,
@@ -62,6 +63,14 @@ struct Body {
                                             {bounds.highest.x + reach, bounds.highest.y, bounds.highest.z});
   }
 };
+
+/// `pose` as a program has it that makes it where it is sent from; one that sends 16 bits has memory of its own.
+std::span<const Vec3> made(const Body& body, const std::vector<Vec3>& pose, Deformer& deformer) {
+  if (body.quantized) return pose;
+  const std::span<Vec3> positions = deformer.positions_buffer(pose.size());
+  std::copy(pose.begin(), pose.end(), positions.begin());
+  return positions;
+}
 
 /// Leaning to and fro about the lowest point.
 std::vector<Vec3> leaning(const Body& body, int frame) {
@@ -85,8 +94,9 @@ absl::Status measure_latency(const Scene& scene, const Body& body, const StreamO
   Deformer deformer = scene.deform();
   for (int i = -3; i < frames; ++i) {
     const std::vector<Vec3> positions = leaning(body, i);
+    const std::span<const Vec3> to_send = made(body, positions, deformer);
     const Clock::time_point begin = Clock::now();
-    if (absl::Status sent = body.send(deformer, positions); !sent.ok()) return sent;
+    if (absl::Status sent = body.send(deformer, to_send); !sent.ok()) return sent;
     const absl::StatusOr<uint64_t> revision = deformer.flush();
     if (!revision.ok()) return revision.status();
     absl::StatusOr<StreamedFrame> frame = stream.next();
@@ -117,7 +127,7 @@ absl::Status measure_rest(const Scene& scene, const Body& body, StreamOptions op
   FrameStream stream = scene.stream(options);
   Deformer deformer = scene.deform();
   for (int i = 0; i < 5; ++i) {
-    if (absl::Status sent = body.send(deformer, leaning(body, i)); !sent.ok()) return sent;
+    if (absl::Status sent = body.send(deformer, made(body, leaning(body, i), deformer)); !sent.ok()) return sent;
     const absl::StatusOr<uint64_t> revision = deformer.flush();
     if (!revision.ok()) return revision.status();
     const Clock::time_point begin = Clock::now();
@@ -139,7 +149,7 @@ absl::Status measure_rate(const Scene& scene, const Body& body, const StreamOpti
     std::vector<std::vector<Vec3>> poses;
     for (int i = 0; i < 8; ++i) poses.push_back(leaning(body, 3 * i));
     for (size_t i = 0; !done; ++i) {
-      if (!body.send(deformer, poses[i % poses.size()]).ok() || !deformer.flush().ok()) return;
+      if (!body.send(deformer, made(body, poses[i % poses.size()], deformer)).ok() || !deformer.flush().ok()) return;
     }
   });
   absl::Status status;

@@ -101,6 +101,11 @@ class Deformer {
   Deformer& operator=(Deformer&&) noexcept;
   ~Deformer();
 
+  /// Memory for `count` positions of no particular value, in place of a program's own: what is written there and then
+  /// given to set_positions() is not copied, where it is of a server that shares memory not at all. Until that call, or
+  /// the next of this.
+  std::span<Vec3> positions_buffer(size_t count);
+
   /// New positions of all vertices of a mesh, in mesh units; its normals are computed from now on.
   absl::Status set_positions(const MeshHandle& mesh, std::span<const Vec3> positions);
   /// The same of some: vertex indices[i] to positions[i]. None is no change. INVALID_ARGUMENT, which the calls after it
@@ -108,8 +113,8 @@ class Deformer {
   absl::Status set_positions(const MeshHandle& mesh, std::span<const uint32_t> indices,
                              std::span<const Vec3> positions);
   /// All positions in 16 bits an axis within the box from `lowest` to `highest`: half the bytes, and at most 0.51 steps
-  /// of (highest − lowest)/65535 lost. INVALID_ARGUMENT, which the calls after it do not repeat, for a box that is none,
-  /// or a position outside it.
+  /// of (highest − lowest)/65535 lost. INVALID_ARGUMENT, which the calls after it do not repeat, for a box that is
+  /// none, or a position outside it.
   absl::Status set_quantized_positions(const MeshHandle& mesh, std::span<const Vec3> positions, const Vec3& lowest,
                                        const Vec3& highest);
   /// The same of some: vertex indices[i] to positions[i].

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <random>
 #include <thread>
@@ -162,6 +163,57 @@ TEST_P(LargeEditTest, OfAGroupThatABreakDividesArrives) {
   expected[3] = {1, 2, 3};
   expected[7] = {4, 5, 6};
   expect_positions(expected, 0);
+}
+
+TEST_P(LargeEditTest, ArrivesFromTheDeformersOwnMemory) {
+  for (const bool compress : {false, true}) {
+    Deformer deformer = scene_->deform({.compress = compress, .share_memory = GetParam()});
+    for (int round = 0; round < 4; ++round) {
+      const std::vector<Vec3> positions = somewhere();
+      const std::span<Vec3> buffer = deformer.positions_buffer(kVertices);
+      ASSERT_EQ(buffer.size(), kVertices);
+      std::copy(positions.begin(), positions.end(), buffer.begin());
+      if (round == 2) relay_->cut();
+      ASSERT_TRUE(deformer.set_positions(body_, buffer).ok());
+      ASSERT_TRUE(deformer.flush().ok());
+      expect_positions(positions, 0);
+    }
+  }
+}
+
+TEST_P(LargeEditTest, OfAGroupArrivesFromTheDeformersOwnMemory) {
+  Deformer deformer = scene_->deform({.share_memory = GetParam()});
+  ASSERT_TRUE(deformer.set_positions(body_, somewhere()).ok());
+  ASSERT_TRUE(deformer.flush().ok());
+  const std::vector<Vec3> positions = somewhere();
+  deformer.begin();
+  const std::span<Vec3> buffer = deformer.positions_buffer(kVertices);
+  std::copy(positions.begin(), positions.end(), buffer.begin());
+  ASSERT_TRUE(deformer.set_positions(body_, buffer).ok());
+  // Another buffer is other memory, given back unused.
+  EXPECT_NE(deformer.positions_buffer(kVertices).data(), buffer.data());
+  ASSERT_TRUE(deformer.commit().ok());
+  ASSERT_TRUE(deformer.flush().ok());
+  expect_positions(positions, 0);
+}
+
+TEST_P(LargeEditTest, SomeOfABufferOrMemoryBesideItIsSentAsAnyOther) {
+  Deformer deformer = scene_->deform({.share_memory = GetParam()});
+  std::vector<Vec3> positions = somewhere();
+  ASSERT_TRUE(deformer.set_positions(body_, positions).ok());
+  ASSERT_TRUE(deformer.flush().ok());
+  const std::span<Vec3> buffer = deformer.positions_buffer(kVertices);
+  buffer[0] = {1, 2, 3};
+  buffer[1] = {4, 5, 6};
+  ASSERT_TRUE(deformer.set_positions(body_, std::vector<uint32_t>{5, 9}, buffer.first(2)).ok());
+  ASSERT_TRUE(deformer.flush().ok());
+  positions[5] = {1, 2, 3};
+  positions[9] = {4, 5, 6};
+  expect_positions(positions, 0);
+  positions = somewhere();
+  ASSERT_TRUE(deformer.set_positions(body_, positions).ok());
+  ASSERT_TRUE(deformer.flush().ok());
+  expect_positions(positions, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(ThroughSharedMemory, LargeEditTest, ::testing::Bool());

@@ -66,6 +66,18 @@ TEST_F(LiveClientTest, EditsArriveInOrderAndFlushWaitsForThem) {
   EXPECT_EQ(server_positions(), here);
 }
 
+TEST_F(LiveClientTest, AFewPositionsArriveFromTheDeformersOwnMemory) {
+  Deformer deformer = scene_->deform();
+  const std::span<Vec3> buffer = deformer.positions_buffer(mesh_.positions.size());
+  std::vector<Vec3> here = mesh_.positions;
+  for (Vec3& p : here) p.x += 2;
+  std::copy(here.begin(), here.end(), buffer.begin());
+  ASSERT_TRUE(deformer.set_positions(body_, buffer).ok());
+  ASSERT_TRUE(deformer.flush().ok());
+  EXPECT_EQ(server_positions(), here);
+  EXPECT_TRUE(deformer.positions_buffer(0).empty());
+}
+
 TEST_F(LiveClientTest, AGroupIsOneRevision) {
   Deformer deformer = scene_->deform();
   const uint64_t before = scene_->describe()->scene.revision;

@@ -20,7 +20,7 @@ class Offered {
       : file_(memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING)) {
     EXPECT_EQ(ftruncate(file_, kBytes), 0);
     EXPECT_EQ(pwrite(file_, kNonce.data(), kNonce.size(), 0), static_cast<ssize_t>(kNonce.size()));
-    if (seals != 0) EXPECT_EQ(fcntl(file_, F_ADD_SEALS, seals), 0);
+    EXPECT_EQ(fcntl(file_, F_ADD_SEALS, seals), 0);
     offer.set_process_id(getpid());
     offer.set_file_descriptor(file_);
     offer.set_bytes(kBytes);

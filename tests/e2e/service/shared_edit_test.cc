@@ -7,6 +7,7 @@
 #include <atomic>
 #include <thread>
 
+#include "service/shared_buffers.h"
 #include "tests/e2e/service/edit_fixture.h"
 
 namespace diaphane::e2e {
@@ -258,6 +259,28 @@ TEST_F(SharedEditTest, MemoryIsNotAskedForInTheMiddleOfAnEdit) {
   ask(*stream, 100);
   const grpc::Status status = end(*stream);
   EXPECT_EQ(error_info(status).metadata().at("field"), "part") << status.error_message();
+}
+
+TEST_F(SharedEditTest, MemoryIsGivenOverLoopbackOfTheSixthVersionToo) {
+  auto server = app::Server::start({.listen = "[::1]:0"}, fakes::fake_renderers(control_));
+  if (!server.ok()) GTEST_SKIP() << "no such loopback here: " << server.status();
+  server_ = *std::move(server);
+  scenes_ = v1::SceneService::NewStub(grpc::CreateChannel(server_->address(), grpc::InsecureChannelCredentials()));
+  scene_ = create_scene().name();
+  grpc::ClientContext context;
+  const auto stream = open(&context);
+  EXPECT_TRUE(Mapped(offered(*stream, 1000)).is_open());
+  EXPECT_TRUE(end(*stream).ok());
+}
+
+TEST(IsOnThisMachine, IsWhatSpeaksOverASocketFileOrLoopback) {
+  for (const char* peer :
+       {"unix:", "unix:/run/diaphane", "ipv4:127.0.0.1:2011", "ipv4:127.1.2.3:1", "ipv6:%5B::1%5D:7"}) {
+    EXPECT_TRUE(service::is_on_this_machine(peer)) << peer;
+  }
+  for (const char* peer : {"", "ipv4:10.0.0.1:7", "ipv4:12.7.0.1:7", "ipv6:%5B2001:db8::1%5D:7", "ipv6:%5B::%5D:7"}) {
+    EXPECT_FALSE(service::is_on_this_machine(peer)) << peer;
+  }
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "sequence_command.h"
 #include "server_commands.h"
 #include "stream_command.h"
+#include "view_command.h"
 
 namespace diaphane::cli {
 namespace {
@@ -20,10 +21,12 @@ struct Commands {
   RenderArguments render_arguments;
   SequenceArguments sequence_arguments;
   StreamArguments stream_arguments;
+  ViewArguments view_arguments;
   std::string scene_id;
   CLI::App* render = nullptr;
   CLI::App* sequence = nullptr;
   CLI::App* stream = nullptr;
+  CLI::App* view = nullptr;
   CLI::App* materials = nullptr;
   CLI::App* info = nullptr;
   CLI::App* health = nullptr;
@@ -47,6 +50,8 @@ struct Commands {
     add_sequence_options(*sequence, sequence_arguments);
     stream = app.add_subcommand("stream", "Deform a body in real time, and keep the frames that come of it");
     add_stream_options(*stream, stream_arguments);
+    view = app.add_subcommand("view", "Show a scene in the terminal, turned by keys, still or moving");
+    add_view_options(*view, view_arguments);
     materials = app.add_subcommand("materials", "List the material presets");
     info = app.add_subcommand("info", "Say what the server is, and what it allows");
     health = app.add_subcommand("health", "Say whether a running server serves; exits with 3 if not");
@@ -56,7 +61,8 @@ struct Commands {
     scene_show = scene->add_subcommand("show", "Show one and all that is in it");
     scene_rm = scene->add_subcommand("rm", "Delete one");
     for (CLI::App* command : {scene_show, scene_rm}) command->add_option("ID", scene_id)->required();
-    for (CLI::App* command : {render, sequence, stream, materials, info, health, scene, scene_ls, scene_show, scene_rm})
+    for (CLI::App* command :
+         {render, sequence, stream, view, materials, info, health, scene, scene_ls, scene_show, scene_rm})
       command->fallthrough();
   }
 
@@ -64,6 +70,7 @@ struct Commands {
     if (render->parsed()) return run_render(global, render_arguments);
     if (sequence->parsed()) return run_sequence(global, sequence_arguments, job_options(*sequence));
     if (stream->parsed()) return run_stream(global, stream_arguments);
+    if (view->parsed()) return run_view(global, view_arguments);
     if (materials->parsed()) return run_materials(global);
     if (info->parsed()) return run_info(global);
     if (health->parsed()) return run_health(global);
@@ -71,8 +78,8 @@ struct Commands {
     if (scene_show->parsed()) return run_scene_show(global, scene_id);
     if (scene_rm->parsed()) return run_scene_rm(global, scene_id);
     if (scene->parsed()) return usage_error("scene", "give one of ls, show ID, rm ID");
-    return usage_error("COMMAND",
-                       "give one of render, sequence, stream, materials, info, health, scene; see diaphane --help");
+    return usage_error(
+        "COMMAND", "give one of render, sequence, stream, view, materials, info, health, scene; see diaphane --help");
   }
 };
 

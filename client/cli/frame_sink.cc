@@ -65,17 +65,10 @@ class FolderSink : public FrameSink {
 
 class MovieSink : public FrameSink {
  public:
-  MovieSink(fs::path part, std::unique_ptr<media::AnimationWriter> movie, const Size& size)
-      : part_(std::move(part)), movie_(std::move(movie)), size_(size) {}
-  ~MovieSink() override {
-    std::error_code code;
-    fs::remove(part_, code);
-  }
+  MovieSink(std::unique_ptr<media::AnimationWriter> movie, const Size& size) : movie_(std::move(movie)), size_(size) {}
 
   absl::Status add(const StreamedFrame& frame) override {
-    // The client's decoder of pictures reads files.
-    if (absl::Status status = write_file(part_, frame.frame.image); !status.ok()) return status;
-    absl::StatusOr<TextureData> picture = read_texture_file(part_, true);
+    absl::StatusOr<TextureData> picture = decode_texture(frame.frame.image, true);
     absl::Status status = picture.status();
     if (status.ok()) {
       status =
@@ -86,7 +79,6 @@ class MovieSink : public FrameSink {
   absl::Status finish() override { return with_exit_code(movie_->finish(), kExitFile); }
 
  private:
-  const fs::path part_;
   const std::unique_ptr<media::AnimationWriter> movie_;
   const Size size_;
 };
@@ -116,7 +108,7 @@ absl::StatusOr<std::unique_ptr<FrameSink>> open_frame_sink(const std::string& ou
                                           .height_px = static_cast<int>(size.height_px),
                                           .frames_per_second = std::min(frames_per_second, 120.0)});
     if (!movie.ok()) return with_exit_code(movie.status(), kExitFile);
-    return std::make_unique<MovieSink>(output + ".frame", *std::move(movie), size);
+    return std::make_unique<MovieSink>(*std::move(movie), size);
   }
   if (format == ImageFormat::kH264) return usage_error("--encoding", "h264 goes to an .h264 or to stdout");
   absl::StatusOr<FrameFolder> folder = FrameFolder::open(output, extension_of(format), "{\"stream\": true}\n");

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "animator.h"
 #include "fmt/format.h"
 #include "frame_sink.h"
 #include "json.h"
@@ -108,45 +109,6 @@ class Viewer {
   std::thread thread_;
 };
 
-/// Sends a scene's edits.
-class Animator {
- public:
-  Animator(const StreamArguments& arguments, const MovingPlan& moving, const Scene& scene,
-           std::vector<MeshHandle> meshes)
-      : arguments_(arguments),
-        moving_(moving),
-        meshes_(std::move(meshes)),
-        deformer_(scene.deform({.compress = arguments.compress})) {}
-
-  uint32_t edits() const { return moving_.motion->frame_count(); }
-
-  absl::Status send(uint32_t edit) {
-    if (arguments_.morph && meshes_.size() == 1) {
-      return deformer_.morph_to_sphere(meshes_.front(), there_and_back(edit, edits()));
-    }
-    const absl::StatusOr<std::vector<MeshPose>> poses = moving_.motion->poses(edit);
-    if (!poses.ok()) return with_exit_code(poses.status(), kExitFile);
-    deformer_.begin();
-    for (size_t i = 0; i < poses->size(); ++i) {
-      absl::Status sent = deformer_.set_positions(meshes_[i], (*poses)[i].positions);
-      if (!sent.ok()) return sent;
-    }
-    return deformer_.commit();
-  }
-
-  absl::StatusOr<uint64_t> flush() { return deformer_.flush(); }
-
- private:
-  static float there_and_back(uint32_t edit, uint32_t edits) {
-    return static_cast<float>(0.5 - 0.5 * std::cos(2 * M_PI * edit / edits));
-  }
-
-  const StreamArguments& arguments_;
-  const MovingPlan& moving_;
-  const std::vector<MeshHandle> meshes_;
-  Deformer deformer_;
-};
-
 absl::StatusOr<MovingPlan> plan_stream(const StreamArguments& arguments) {
   if (!arguments.morph && !arguments.animation) {
     return usage_error("MOTION", "give one of --morph sphere, --animation NAME");
@@ -177,7 +139,8 @@ absl::Status stream_scene(const StreamArguments& arguments, const MovingPlan& mo
   options.view.bits_per_second = arguments.bits_per_second;
   options.view.lossless_at_rest = false;
   options.every_revision = arguments.every_revision;
-  Animator animator(arguments, moving, scene, std::move(meshes));
+  Animator animator(*moving.motion, arguments.morph.has_value(), scene, std::move(meshes),
+                    {.compress = arguments.compress});
   const uint64_t edits =
       arguments.seconds
           ? static_cast<uint64_t>(std::max(1.0, std::round(*arguments.seconds * arguments.edits_per_second)))

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -27,5 +28,10 @@ struct TextureData {
 /// Errors, each one line that starts with the path: NOT_FOUND no such file; PERMISSION_DENIED it cannot be opened;
 /// INVALID_ARGUMENT it is no such picture, or damaged; RESOURCE_EXHAUSTED it is too large. Thread-safe.
 absl::StatusOr<TextureData> read_texture_file(const std::filesystem::path& path, bool srgb);
+
+/// The same of a file's bytes, such as those of a frame.
+///
+/// Errors, each one line that starts with "picture": INVALID_ARGUMENT, RESOURCE_EXHAUSTED. Thread-safe.
+absl::StatusOr<TextureData> decode_texture(std::string_view file, bool srgb);
 
 }  // namespace diaphane

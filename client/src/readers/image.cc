@@ -100,4 +100,11 @@ absl::StatusOr<TextureData> read_texture_file(const std::filesystem::path& path,
   return texture;
 }
 
+absl::StatusOr<TextureData> decode_texture(std::string_view file, bool srgb) {
+  const readers::Source source{"picture", {}, {}};
+  absl::StatusOr<TextureData> texture = readers::decode_image(file, source.limits.max_texture_pixels, source);
+  if (texture.ok()) texture->srgb = srgb;
+  return texture;
+}
+
 }  // namespace diaphane

@@ -1,11 +1,14 @@
 #include "programs.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <pty.h>
+#include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <fstream>
 #include <iterator>
 
@@ -21,20 +24,26 @@ void redirect(const fs::path& path, int descriptor) {
   dup2(file, descriptor);
 }
 
+/// In the child; does not come back.
+[[noreturn]] void become(const std::string& program, const fs::path& folder,
+                         const std::vector<std::string>& arguments) {
+  std::vector<char*> argv{const_cast<char*>(program.c_str())};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  if (chdir(folder.c_str()) != 0) _exit(126);
+  execv(program.c_str(), argv.data());
+  _exit(127);
+}
+
 // Starts it with its stdout in .stdout, and stderr where `redirect_stderr` says.
 template <typename Redirect>
 pid_t start(const std::string& program, const fs::path& folder, const std::vector<std::string>& arguments,
             const Redirect& redirect_stderr) {
-  std::vector<char*> argv{const_cast<char*>(program.c_str())};
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
   const pid_t child = fork();
   if (child != 0) return child;
-  if (chdir(folder.c_str()) != 0) _exit(126);
   redirect(folder / ".stdout", STDOUT_FILENO);
   redirect_stderr();
-  execv(program.c_str(), argv.data());
-  _exit(127);
+  become(program, folder, arguments);
 }
 
 /// Waits for its end; the rest of what there is to say is the caller's.
@@ -80,6 +89,37 @@ Finished run_diaphane_on_terminal(const fs::path& folder, const std::vector<std:
   Finished finished = finish(child);
   finished.out = read_file(folder / ".stdout");
   finished.err = err;
+  return finished;
+}
+
+Finished run_diaphane_in_terminal(const fs::path& folder, const std::vector<std::string>& arguments,
+                                  const std::vector<Typed>& typed) {
+  const std::string program = in_bin("diaphane");
+  winsize size{.ws_row = 12, .ws_col = 40, .ws_xpixel = 0, .ws_ypixel = 0};
+  int terminal = -1;
+  const pid_t child = forkpty(&terminal, nullptr, nullptr, &size);
+  if (child == 0) become(program, folder, arguments);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  std::string out;
+  size_t next = 0, searched = 0;
+  while (true) {
+    pollfd waiting{terminal, POLLIN, 0};
+    if (std::chrono::steady_clock::now() > end) kill(child, SIGKILL);
+    if (poll(&waiting, 1, 100) <= 0) continue;
+    char bytes[4096];
+    const ssize_t count = read(terminal, bytes, sizeof bytes);
+    if (count <= 0) break;
+    out.append(bytes, static_cast<size_t>(count));
+    if (next == typed.size()) continue;
+    const size_t found = out.find(typed[next].after, searched);
+    if (found == std::string::npos) continue;
+    searched = found + typed[next].after.size();
+    const std::string& keys = typed[next++].keys;
+    if (write(terminal, keys.data(), keys.size()) != static_cast<ssize_t>(keys.size())) break;
+  }
+  close(terminal);
+  Finished finished = finish(child);
+  finished.out = out;
   return finished;
 }
 

@@ -28,6 +28,17 @@ Finished run_diaphane(const std::filesystem::path& folder, const std::vector<std
 /// The same, with a terminal in the place of stderr: `err` is what it was sent.
 Finished run_diaphane_on_terminal(const std::filesystem::path& folder, const std::vector<std::string>& arguments);
 
+/// What a person does once a text has come.
+struct Typed {
+  std::string after;
+  std::string keys;
+};
+
+/// The same in a terminal of 40 columns and 12 rows: `out` is what it was sent. What is typed is awaited in turn; a
+/// minute after the start the program is killed.
+Finished run_diaphane_in_terminal(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
+                                  const std::vector<Typed>& typed);
+
 std::string read_file(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, const std::string& text);
 

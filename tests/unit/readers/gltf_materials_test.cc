@@ -183,6 +183,20 @@ TEST(Images, AreRefusedWhereTheyEndEarly) {
   EXPECT_EQ(read_texture_file("/nowhere/a.png", true).status().code(), absl::StatusCode::kNotFound);
 }
 
+TEST(Images, AreDecodedFromBytesAsFromFiles) {
+  const ScratchFolder folder;
+  for (const std::string& whole : {kRedGreenPng, kGreyJpeg, kGreyWebp}) {
+    const auto picture = decode_texture(whole, true);
+    ASSERT_TRUE(picture.ok()) << picture.status();
+    const auto file = read_texture_file(folder.write("a", whole), true);
+    EXPECT_EQ(picture->rgba, file->rgba);
+    EXPECT_EQ(picture->width_px, file->width_px);
+    EXPECT_TRUE(picture->srgb);
+  }
+  EXPECT_THAT(std::string(decode_texture("P6 1 1 255", true).status().message()),
+              HasSubstr("picture: is neither PNG nor JPEG nor WebP"));
+}
+
 TEST(Images, ThatClaimToBeHugeAreRefusedBeforeAnythingIsMadeOfThem) {
   std::string png = kRedGreenPng;
   png.replace(16, 4, std::string("\x7f\xff\xff\xff", 4));

@@ -1,0 +1,24 @@
+// Options of diaphane view.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "CLI/CLI.hpp"
+#include "render_arguments.h"
+#include "terminal_picture.h"
+
+namespace diaphane::cli {
+
+struct ViewArguments {
+  RenderArguments render;
+  std::optional<std::string> morph;  ///< "sphere"
+  std::optional<std::string> animation;
+  double edits_per_second = 30;
+  std::optional<PictureProtocol> protocol;  ///< not given: by the terminal
+};
+
+/// Declares the options of `view` on `command`; see add_scene_options().
+void add_view_options(CLI::App& command, ViewArguments& arguments);
+
+}  // namespace diaphane::cli

@@ -2,9 +2,12 @@
 
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "CLI/CLI.hpp"
+#include "fmt/format.h"
 #include "render_arguments.h"
 #include "render_command.h"
 #include "sequence_command.h"
@@ -83,6 +86,8 @@ struct Commands {
   }
 };
 
+void print_usage_error(std::string_view what) { print_note(fmt::format("{} (see diaphane --help)", what)); }
+
 }  // namespace
 
 ExitCode run_command_line(int argc, const char* const* argv, std::stop_token stop) {
@@ -93,8 +98,13 @@ ExitCode run_command_line(int argc, const char* const* argv, std::stop_token sto
   } catch (const CLI::Success& request) {  // --help, --version
     commands.app.exit(request);
     return kExitOk;
+  } catch (const CLI::RequiredError& error) {
+    // A flag mistyped is why one is missing, more often than not.
+    const std::vector<std::string> unknown = commands.app.remaining(true);
+    print_usage_error(unknown.empty() ? error.what() : CLI::ExtrasError(unknown).what());
+    return kExitUsage;
   } catch (const CLI::ParseError& error) {
-    print_note(std::string(error.what()) + " (see diaphane --help)");
+    print_usage_error(error.what());
     return kExitUsage;
   }
   absl::Status status = commands.run();

@@ -12,6 +12,7 @@ TEST_F(CliTest, WrongCommandLinesExitWithTwoAndNameTheFlag) {
   EXPECT_THAT(refusal(2, render({"-o", "x.png", "--eye", "1,2"})), HasSubstr("--eye"));
   EXPECT_THAT(refusal(2, render({"-o", "x.png", "--absorption", "1,1,1"})), HasSubstr("--scattering"));
   EXPECT_THAT(refusal(2, render({})), HasSubstr("-o"));
+  EXPECT_THAT(refusal(2, render({"--ouput", "x.png"})), HasSubstr("--ouput"));
   EXPECT_THAT(refusal(2, {"render", "-o", "x.png"}), HasSubstr("MESH"));
   EXPECT_THAT(refusal(2, {"--server", "nowhere", "info"}), HasSubstr("--server"));
   EXPECT_THAT(refusal(2, {"--server", "nowhere", "health"}), HasSubstr("--server"));

@@ -63,7 +63,7 @@ Server::Server(const ServerOptions& options, std::unique_ptr<session::RenderThre
       workers_(kUploadThreads, kMaxWaitingUploads),
       video_(kVideoThreads, kMaxWaitingVideo),
       render_thread_(std::move(render_thread)),
-      scene_service_(options.limits, store_, workers_, open_streams_),
+      scene_service_(options.limits, store_, *render_thread_, workers_, open_streams_),
       render_service_(options.limits, store_, *render_thread_, workers_, video_, open_streams_),
       server_service_(kVersion, options.limits, render_thread_->info()) {}
 

@@ -15,12 +15,17 @@ constexpr size_t kMostPayloadBytes = size_t{1} << 20;
 
 }  // namespace
 
-EditStream::EditStream(scene::SceneStore& store, Editors& editors, OpenStreams& open_streams,
-                       SharedBufferCount& shared_buffers, std::string_view peer)
+EditStream::EditStream(scene::SceneStore& store, const session::RenderThread& render_thread, Editors& editors,
+                       OpenStreams& open_streams, SharedBufferCount& shared_buffers, std::string_view peer)
     : store_(store),
+      render_thread_(render_thread),
       editors_(editors),
       open_streams_(open_streams),
       shared_buffers_(store, shared_buffers, is_on_this_machine(peer)) {
+  {
+    const absl::MutexLock lock(&link_->mutex);
+    link_->stream = this;
+  }
   id_ = open_streams_.add([this] {
     const absl::MutexLock lock(&mutex_);
     if (!ending_.has_value()) ending_ = absl::UnavailableError("the server is stopping");
@@ -35,15 +40,43 @@ void EditStream::OnDone() {
     // Whoever was here last has let go.
     const absl::MutexLock lock(&mutex_);
   }
+  {
+    const std::shared_ptr<Link> link = link_;
+    const absl::MutexLock lock(&link->mutex);
+    link->stream = nullptr;
+    link->alarm.reset();
+  }
   delete this;
 }
 
 void EditStream::OnReadDone(bool ok) {
+  const absl::Time begin = absl::Now();
   const absl::Status status = ok ? take(request_) : absl::OkStatus();
-  if (ok && status.ok()) return StartRead(&request_);
+  work_ += absl::Now() - begin;
+  if (ok && status.ok()) return read_next();
   const absl::MutexLock lock(&mutex_);
   if (!ending_.has_value()) ending_ = status;
   if (!writing_) acknowledge();
+}
+
+void EditStream::read_next() {
+  if (edit_.has_value()) return StartRead(&request_);
+  const absl::Time now = absl::Now(), due = pace_.after(std::exchange(work_, absl::ZeroDuration()), now);
+  if (due == now || !render_thread_.is_busy()) return StartRead(&request_);
+  const absl::MutexLock lock(&link_->mutex);
+  // A new one: to set one again would end the function that it runs.
+  link_->alarm.emplace();
+  link_->alarm->Set(absl::ToChronoTime(due), [link = link_](bool ok) {
+    if (!ok) return;
+    const absl::MutexLock lock(&link->mutex);
+    if (link->stream != nullptr) link->stream->go_on();
+  });
+}
+
+/// Nothing else keeps a stream from its end meanwhile: once it is finished, reading is too late.
+void EditStream::go_on() {
+  const absl::MutexLock lock(&mutex_);
+  if (!finished_) StartRead(&request_);
 }
 
 void EditStream::OnWriteDone(bool ok) {

@@ -62,7 +62,7 @@ SceneService::Unary* SceneService::DeleteScene(Context* context, const v1::Delet
 }
 
 grpc::ServerBidiReactor<v1::EditSceneRequest, v1::EditSceneResponse>* SceneService::EditScene(Context* context) {
-  return new EditStream(store_, editors_, open_streams_, shared_buffers_, context->peer());
+  return new EditStream(store_, render_thread_, editors_, open_streams_, shared_buffers_, context->peer());
 }
 
 }  // namespace diaphane::service

@@ -8,6 +8,7 @@
 #include "service/open_streams.h"
 #include "service/reply_memory.h"
 #include "service/shared_buffers.h"
+#include "session/render_thread.h"
 
 namespace diaphane::service {
 
@@ -15,10 +16,11 @@ namespace diaphane::service {
 class SceneService final : public v1::SceneService::CallbackService {
  public:
   /// `workers` hash, check and index what was uploaded: too long for a gRPC thread.
-  SceneService(const ServiceLimits& limits, scene::SceneStore& store, base::WorkerPool& workers,
-               OpenStreams& open_streams)
+  SceneService(const ServiceLimits& limits, scene::SceneStore& store, const session::RenderThread& render_thread,
+               base::WorkerPool& workers, OpenStreams& open_streams)
       : limits_(limits),
         store_(store),
+        render_thread_(render_thread),
         workers_(workers),
         open_streams_(open_streams),
         replies_(limits.max_remembered_replies) {}
@@ -70,6 +72,7 @@ class SceneService final : public v1::SceneService::CallbackService {
 
   const ServiceLimits limits_;
   scene::SceneStore& store_;
+  const session::RenderThread& render_thread_;
   base::WorkerPool& workers_;
   Editors editors_;
   SharedBufferCount shared_buffers_;

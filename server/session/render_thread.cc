@@ -81,6 +81,11 @@ absl::StatusOr<std::shared_ptr<FrameJob>> RenderThread::submit(FrameTask task) {
   return job;
 }
 
+bool RenderThread::is_busy() const {
+  absl::MutexLock lock(&mutex_);
+  return !queued_.empty() || !started_.empty();
+}
+
 void RenderThread::cancel(const std::shared_ptr<FrameJob>& job) {
   job->cancel();
   {

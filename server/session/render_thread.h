@@ -58,6 +58,9 @@ class RenderThread {
 
   const render::RendererInfo& info() const { return info_; }
 
+  /// Whether frames wait, or are drawn or encoded.
+  bool is_busy() const ABSL_LOCKS_EXCLUDED(mutex_);
+
  private:
   using JobPtr = std::shared_ptr<FrameJob>;
   struct Drawn {
@@ -87,7 +90,7 @@ class RenderThread {
   const RenderThreadOptions options_;
   render::RendererInfo info_;
 
-  absl::Mutex mutex_;
+  mutable absl::Mutex mutex_;
   // One for each thread that waits, so that a frame does not wake those that have nothing to do.
   absl::CondVar can_draw_;    // the render thread: a job came, or a frame was encoded
   absl::CondVar must_watch_;  // the watching thread: a job has begun to tell of, or has a time to end at

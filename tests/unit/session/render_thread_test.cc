@@ -144,6 +144,24 @@ TEST(FairSharesTest, GiveALightOneHalfOfTheTimeBesideAHeavyOne) {
   EXPECT_NEAR(light_ms / (light_ms + heavy_ms), 0.5, 0.01);
 }
 
+TEST(FairSharesTest, TakeNoTurnFromWhoIsLateNowAndThen) {
+  FairShares shares;
+  const std::string light = "light", heavy = "heavy";
+  const std::string* const both[] = {&heavy, &light};
+  double light_ms = 0, heavy_ms = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const bool is_late = i % 60 == 0;
+    if (shares.choose(std::span(both).first(is_late ? 1 : 2)) == 1) {
+      shares.book(light, 1);
+      light_ms += 1;
+    } else {
+      shares.book(heavy, 50);
+      heavy_ms += 50;
+    }
+  }
+  EXPECT_NEAR(light_ms / (light_ms + heavy_ms), 0.5, 0.02);
+}
+
 TEST(FairSharesTest, SaveNothingForWhoDidNotAsk) {
   FairShares shares;
   const std::string busy = "busy", late = "late";

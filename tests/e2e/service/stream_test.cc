@@ -447,10 +447,14 @@ TEST_F(StreamTest, IsToldThatTheServerStopsAndDoesNotHoldItUp) {
   v1::EditSceneRequest request;
   request.mutable_opening()->set_scene(scene_);
   edits->Write(request);
+  // Its answer says that the call has come to the server, which refuses those that come later.
+  request.set_shared_memory_bytes(65536);
+  edits->Write(request);
+  v1::EditSceneResponse response;
+  ASSERT_TRUE(edits->Read(&response));
   const auto begin = std::chrono::steady_clock::now();
   std::thread stopper([&] { server_->stop(absl::Seconds(60)); });
   expect_refused(*stream, grpc::StatusCode::UNAVAILABLE, "");
-  v1::EditSceneResponse response;
   while (edits->Read(&response)) {
   }
   EXPECT_EQ(edits->Finish().error_code(), grpc::StatusCode::UNAVAILABLE);

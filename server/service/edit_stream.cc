@@ -61,8 +61,9 @@ void EditStream::OnReadDone(bool ok) {
 
 void EditStream::read_next() {
   if (edit_.has_value()) return StartRead(&request_);
-  const absl::Time now = absl::Now(), due = pace_.after(std::exchange(work_, absl::ZeroDuration()), now);
-  if (due == now || !render_thread_.is_busy()) return StartRead(&request_);
+  const absl::Time now = absl::Now();
+  const absl::Time due = pace_.after(std::exchange(work_, absl::ZeroDuration()), now, render_thread_.is_busy());
+  if (due == now) return StartRead(&request_);
   const absl::MutexLock lock(&link_->mutex);
   // A new one: to set one again would end the function that it runs.
   link_->alarm.emplace();

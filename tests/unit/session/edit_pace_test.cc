@@ -12,7 +12,7 @@ const absl::Time kStart = absl::FromUnixSeconds(1000);
 int edits_in_a_second(absl::Duration work) {
   EditPace pace;
   int edits = 0;
-  for (absl::Time now = kStart; now < kStart + absl::Seconds(1); ++edits) now = pace.after(work, now + work);
+  for (absl::Time now = kStart; now < kStart + absl::Seconds(1); ++edits) now = pace.after(work, now + work, true);
   return edits;
 }
 
@@ -21,7 +21,7 @@ TEST(EditPaceTest, LeavesEditsAloneThatComeAsFramesDo) {
   absl::Time now = kStart;
   for (int i = 0; i < 100; ++i) {
     now += absl::Milliseconds(16);
-    EXPECT_EQ(pace.after(kLarge, now), now);
+    EXPECT_EQ(pace.after(kLarge, now, true), now);
   }
 }
 
@@ -32,12 +32,32 @@ TEST(EditPaceTest, TakesAnEighthOfTheTimeOfAFlood) {
 
 TEST(EditPaceTest, WaitsForSmallEditsOnceTheyAreMany) {
   EditPace pace;
-  EXPECT_EQ(pace.after(kSmall, kStart), kStart);
-  EXPECT_EQ(pace.after(kSmall, kStart + kSmall), kStart + kSmall);
-  EXPECT_GT(pace.after(kSmall, kStart + 2 * kSmall), kStart + absl::Milliseconds(1));
+  EXPECT_EQ(pace.after(kSmall, kStart, true), kStart);
+  EXPECT_EQ(pace.after(kSmall, kStart + kSmall, true), kStart + kSmall);
+  EXPECT_GT(pace.after(kSmall, kStart + 2 * kSmall, true), kStart + absl::Milliseconds(1));
   // Nothing of it is left after a while.
   const absl::Time later = kStart + absl::Seconds(1);
-  EXPECT_EQ(pace.after(kSmall, later), later);
+  EXPECT_EQ(pace.after(kSmall, later, true), later);
+}
+
+TEST(EditPaceTest, HoldsNothingBackWhileNothingIsDrawnNorForItLater) {
+  EditPace pace;
+  absl::Time now = kStart;
+  for (int i = 0; i < 10'000; ++i) {
+    now += kLarge;
+    EXPECT_EQ(pace.after(kLarge, now, false), now);
+  }
+  EXPECT_EQ(pace.after(kLarge, now + kLarge, true), now + kLarge);
+}
+
+TEST(EditPaceTest, HoldsNoneBackForLong) {
+  EditPace pace;
+  absl::Time now = kStart;
+  for (int i = 0; i < 10; ++i) {
+    const absl::Time next = pace.after(absl::Hours(1), now, true);
+    EXPECT_LE(next, now + absl::Milliseconds(250));
+    now = next;
+  }
 }
 
 }  // namespace

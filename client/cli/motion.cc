@@ -145,6 +145,27 @@ class FileAnimation : public Motion {
 
 }  // namespace
 
+void add_loop_options(CLI::App& command, LoopArguments& arguments) {
+  auto* morph = command.add_option("--morph", arguments.morph, "The meshes become their bounding sphere, and back");
+  auto* animation = command.add_option("--animation", arguments.animation,
+                                       "An animation of a glTF file: its name, or its number from 0");
+  morph->type_name("sphere")->check(CLI::IsMember({"sphere"}))->excludes(animation);
+  animation->type_name("NAME");
+  command.add_option("--fps", arguments.edits_per_second, "Edits a second (default: 30)")
+      ->type_name("F")
+      ->check(CLI::Range(0.1, 240.0));
+}
+
+MotionArguments motion_of(const LoopArguments& arguments, double seconds) {
+  MotionArguments motion;
+  motion.frames_per_second = arguments.edits_per_second;
+  motion.animation = arguments.animation;
+  if (arguments.morph) {
+    motion.morph_frames = static_cast<uint32_t>(std::max(1.0, std::round(seconds * arguments.edits_per_second)));
+  }
+  return motion;
+}
+
 std::unique_ptr<Motion> make_turntable(std::span<const MeshData> meshes, uint32_t frames) {
   return std::make_unique<Turntable>(bounds_of(meshes), frames);
 }

@@ -23,6 +23,21 @@ struct MotionArguments {
   double frames_per_second = 24;
 };
 
+/// What a stream shows over and over: the morph to the sphere and back, or an animation.
+struct LoopArguments {
+  std::optional<std::string> morph;  ///< "sphere"
+  std::optional<std::string> animation;
+  double edits_per_second = 30;
+
+  bool any() const { return morph || animation; }
+};
+
+/// Declares --morph, --animation and --fps on `command`; `arguments` must live as long.
+void add_loop_options(CLI::App& command, LoopArguments& arguments);
+
+/// `seconds`: of the way to the sphere and back.
+MotionArguments motion_of(const LoopArguments& arguments, double seconds);
+
 /// Where the camera and the bodies are, frame by frame. One thread at a time.
 class Motion {
  public:

@@ -9,25 +9,23 @@
 #include "progress.h"
 #include "render_plan.h"
 #include "scene_upload.h"
-#include "session.h"
 #include "status.h"
 
 namespace diaphane::cli {
 namespace {
 
 absl::StatusOr<RenderedFrame> render_scene(const Scene& scene, const RenderPlan& plan, Progress& progress) {
-  if (const auto meshes = fill_scene(scene, plan, progress); !meshes.ok()) return meshes.status();
   const std::string what = fmt::format("rendering {}x{}", plan.options.size.width_px, plan.options.size.height_px);
   progress.step(what);
   if (plan.options.settings.technique != Technique::kReference) return scene.render(plan.options);
   return scene.render(plan.options, [&](double share) { progress.bar(what, share); });
 }
 
-absl::StatusOr<RenderedFrame> make_frame(const Client& client, RenderPlan* plan, Progress& progress) {
-  absl::StatusOr<TemporaryScene> scene = TemporaryScene::create(client, plan);
-  if (!scene.ok()) return scene.status();
-  absl::StatusOr<RenderedFrame> frame = render_scene(scene->scene(), *plan, progress);
-  const absl::Status removed = scene->remove();
+absl::StatusOr<RenderedFrame> make_frame(const GlobalOptions& global, RenderPlan* plan, Progress& progress) {
+  absl::StatusOr<UploadedScene> uploaded = upload_plan(global, plan, progress);
+  if (!uploaded.ok()) return uploaded.status();
+  absl::StatusOr<RenderedFrame> frame = render_scene(uploaded->scene.scene(), *plan, progress);
+  const absl::Status removed = uploaded->scene.remove();
   if (frame.ok() && !removed.ok()) return removed;
   return frame;
 }
@@ -73,10 +71,7 @@ absl::Status run_render(const GlobalOptions& global, const RenderArguments& argu
   if (!plan.ok()) return plan.status();
   for (const std::string& note : plan->notes) print_note(note);
 
-  progress.step(global.server.empty() ? "starting a server" : "connecting");
-  const absl::StatusOr<Session> session = open_session(global);
-  if (!session.ok()) return session.status();
-  const absl::StatusOr<RenderedFrame> frame = make_frame(session->client, &*plan, progress);
+  const absl::StatusOr<RenderedFrame> frame = make_frame(global, &*plan, progress);
   progress.clear();
   if (!frame.ok()) return frame.status();
   if (absl::Status status = write_file(arguments.output, frame->image); !status.ok()) return status;

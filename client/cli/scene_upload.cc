@@ -37,8 +37,7 @@ absl::StatusOr<std::vector<TextureHandle>> upload_textures(const Scene& scene, c
   return handles;
 }
 
-}  // namespace
-
+/// The meshes, in the plan's order.
 absl::StatusOr<std::vector<MeshHandle>> fill_scene(const Scene& scene, const RenderPlan& plan, Progress& progress) {
   const absl::StatusOr<std::vector<TextureHandle>> textures = upload_textures(scene, plan, progress);
   if (!textures.ok()) return textures.status();
@@ -84,6 +83,19 @@ absl::StatusOr<std::vector<MeshHandle>> fill_scene(const Scene& scene, const Ren
     meshes.push_back(*std::move(handle));
   }
   return meshes;
+}
+
+}  // namespace
+
+absl::StatusOr<UploadedScene> upload_plan(const GlobalOptions& global, RenderPlan* plan, Progress& progress) {
+  progress.step(global.server.empty() ? "starting a server" : "connecting");
+  absl::StatusOr<Session> session = open_session(global);
+  if (!session.ok()) return session.status();
+  absl::StatusOr<TemporaryScene> scene = TemporaryScene::create(session->client, plan);
+  if (!scene.ok()) return scene.status();
+  absl::StatusOr<std::vector<MeshHandle>> meshes = fill_scene(scene->scene(), *plan, progress);
+  if (!meshes.ok()) return meshes.status();
+  return UploadedScene{*std::move(session), *std::move(scene), *std::move(meshes)};
 }
 
 absl::StatusOr<TemporaryScene> TemporaryScene::create(const Client& client, RenderPlan* plan) {

@@ -9,6 +9,7 @@
 #include "diaphane/client.h"
 #include "progress.h"
 #include "render_plan.h"
+#include "session.h"
 
 namespace diaphane::cli {
 
@@ -32,7 +33,14 @@ class TemporaryScene {
   std::optional<Scene> scene_;
 };
 
-/// Uploads all of `plan`. The meshes, in its order.
-absl::StatusOr<std::vector<MeshHandle>> fill_scene(const Scene& scene, const RenderPlan& plan, Progress& progress);
+/// What a plan became. The scene is gone before the server is.
+struct UploadedScene {
+  Session session;
+  TemporaryScene scene;
+  std::vector<MeshHandle> meshes;  ///< in the plan's order
+};
+
+/// Connects, or starts a server, and uploads all of `plan`. Errors: as of open_session() and TemporaryScene::create().
+absl::StatusOr<UploadedScene> upload_plan(const GlobalOptions& global, RenderPlan* plan, Progress& progress);
 
 }  // namespace diaphane::cli

@@ -14,7 +14,6 @@
 #include "output_file.h"
 #include "progress.h"
 #include "scene_upload.h"
-#include "session.h"
 #include "status.h"
 
 namespace diaphane::cli {
@@ -103,14 +102,9 @@ absl::Status make_frames(const GlobalOptions& global, const SequenceArguments& a
   }
   made->found = made->total - static_cast<uint32_t>(missing.size());
   if (missing.empty()) return absl::OkStatus();
-  progress.step(global.server.empty() ? "starting a server" : "connecting");
-  const absl::StatusOr<Session> session = open_session(global);
-  if (!session.ok()) return session.status();
-  absl::StatusOr<TemporaryScene> scene = TemporaryScene::create(session->client, &moving->plan);
-  if (!scene.ok()) return scene.status();
-  absl::StatusOr<std::vector<MeshHandle>> meshes = fill_scene(scene->scene(), moving->plan, progress);
-  if (!meshes.ok()) return meshes.status();
-  FrameMaker maker(*moving, scene->scene(), *std::move(meshes));
+  absl::StatusOr<UploadedScene> uploaded = upload_plan(global, &moving->plan, progress);
+  if (!uploaded.ok()) return uploaded.status();
+  FrameMaker maker(*moving, uploaded->scene.scene(), std::move(uploaded->meshes));
   const auto begin = std::chrono::steady_clock::now();
   for (const uint32_t frame : missing) {
     progress.bar(fmt::format("frame {} of {}", made->found + made->rendered + 1, made->total),
@@ -121,7 +115,7 @@ absl::Status make_frames(const GlobalOptions& global, const SequenceArguments& a
     ++made->rendered;
   }
   made->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return scene->remove();
+  return uploaded->scene.remove();
 }
 
 absl::Status write_movie(const SequenceArguments& arguments, const MovingPlan& moving, const FrameFolder& folder,

@@ -12,9 +12,7 @@ namespace diaphane::cli {
 
 struct StreamArguments {
   RenderArguments render;
-  std::optional<std::string> morph;  ///< "sphere"
-  std::optional<std::string> animation;
-  double edits_per_second = 30;
+  LoopArguments loop;
   std::optional<double> seconds;
   std::string output;  ///< a folder, .mp4, .h264, or "-"
   ImageFormat format = ImageFormat::kJpeg;

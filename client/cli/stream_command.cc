@@ -16,7 +16,6 @@
 #include "moving_plan.h"
 #include "progress.h"
 #include "scene_upload.h"
-#include "session.h"
 #include "status.h"
 
 namespace diaphane::cli {
@@ -110,17 +109,8 @@ class Viewer {
 };
 
 absl::StatusOr<MovingPlan> plan_stream(const StreamArguments& arguments) {
-  if (!arguments.morph && !arguments.animation) {
-    return usage_error("MOTION", "give one of --morph sphere, --animation NAME");
-  }
-  MotionArguments motion;
-  motion.frames_per_second = arguments.edits_per_second;
-  motion.animation = arguments.animation;
-  if (arguments.morph) {
-    const double edits = arguments.seconds.value_or(kMorphSeconds) * arguments.edits_per_second;
-    motion.morph_frames = static_cast<uint32_t>(std::max(1.0, std::round(edits)));
-  }
-  return plan_motion(arguments.render, motion);
+  if (!arguments.loop.any()) return usage_error("MOTION", "give one of --morph sphere, --animation NAME");
+  return plan_motion(arguments.render, motion_of(arguments.loop, arguments.seconds.value_or(kMorphSeconds)));
 }
 
 struct Streamed {
@@ -139,11 +129,11 @@ absl::Status stream_scene(const StreamArguments& arguments, const MovingPlan& mo
   options.view.bits_per_second = arguments.bits_per_second;
   options.view.lossless_at_rest = false;
   options.every_revision = arguments.every_revision;
-  Animator animator(*moving.motion, arguments.morph.has_value(), scene, std::move(meshes),
+  Animator animator(*moving.motion, arguments.loop.morph.has_value(), scene, std::move(meshes),
                     {.compress = arguments.compress});
   const uint64_t edits =
       arguments.seconds
-          ? static_cast<uint64_t>(std::max(1.0, std::round(*arguments.seconds * arguments.edits_per_second)))
+          ? static_cast<uint64_t>(std::max(1.0, std::round(*arguments.seconds * arguments.loop.edits_per_second)))
           : animator.edits();
   const absl::StatusOr<SceneDescription> before = scene.describe();
   if (!before.ok()) return before.status();
@@ -153,7 +143,7 @@ absl::Status stream_scene(const StreamArguments& arguments, const MovingPlan& mo
   const Clock::time_point begin = Clock::now();
   for (uint64_t i = 0; i < edits; ++i) {
     std::this_thread::sleep_until(begin + std::chrono::duration_cast<Clock::duration>(
-                                              std::chrono::duration<double>(i / arguments.edits_per_second)));
+                                              std::chrono::duration<double>(i / arguments.loop.edits_per_second)));
     if (arguments.every_revision && i >= kMostBehind) viewer.wait_for(rest + i + 1 - kMostBehind);
     progress.bar(fmt::format("edit {} of {}", i + 1, edits), static_cast<double>(i) / static_cast<double>(edits));
     viewer.sent(rest + i + 1);
@@ -199,21 +189,16 @@ absl::Status run_stream(const GlobalOptions& global, const StreamArguments& give
   if (!moving.ok()) return moving.status();
   for (const std::string& note : moving->plan.notes) print_note(note);
   const absl::StatusOr<std::unique_ptr<FrameSink>> sink =
-      open_frame_sink(arguments.output, arguments.format, moving->plan.options.size, arguments.edits_per_second);
+      open_frame_sink(arguments.output, arguments.format, moving->plan.options.size, arguments.loop.edits_per_second);
   if (!sink.ok()) return sink.status();
-  progress.step(global.server.empty() ? "starting a server" : "connecting");
-  const absl::StatusOr<Session> session = open_session(global);
-  if (!session.ok()) return session.status();
-  absl::StatusOr<TemporaryScene> scene = TemporaryScene::create(session->client, &moving->plan);
-  if (!scene.ok()) return scene.status();
-  absl::StatusOr<std::vector<MeshHandle>> meshes = fill_scene(scene->scene(), moving->plan, progress);
-  if (!meshes.ok()) return meshes.status();
+  absl::StatusOr<UploadedScene> uploaded = upload_plan(global, &moving->plan, progress);
+  if (!uploaded.ok()) return uploaded.status();
   Streamed streamed;
-  const absl::Status status =
-      stream_scene(arguments, *moving, scene->scene(), *std::move(meshes), **sink, progress, &streamed);
+  const absl::Status status = stream_scene(arguments, *moving, uploaded->scene.scene(), std::move(uploaded->meshes),
+                                           **sink, progress, &streamed);
   progress.clear();
   if (!status.ok()) return status;
-  if (absl::Status removed = scene->remove(); !removed.ok()) return removed;
+  if (absl::Status removed = uploaded->scene.remove(); !removed.ok()) return removed;
   report(global, arguments, streamed);
   return absl::OkStatus();
 }

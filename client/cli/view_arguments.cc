@@ -5,14 +5,7 @@
 namespace diaphane::cli {
 
 void add_view_options(CLI::App& command, ViewArguments& arguments) {
-  auto* morph = command.add_option("--morph", arguments.morph, "The meshes become their bounding sphere, and back");
-  auto* animation = command.add_option("--animation", arguments.animation,
-                                       "An animation of a glTF file, over and over: its name, or its number from 0");
-  morph->type_name("sphere")->check(CLI::IsMember({"sphere"}))->excludes(animation);
-  animation->type_name("NAME");
-  command.add_option("--fps", arguments.edits_per_second, "Of what moves, poses a second (default: 30)")
-      ->type_name("F")
-      ->check(CLI::Range(0.1, 240.0));
+  add_loop_options(command, arguments.loop);
   command
       .add_option_function<std::string>(
           "--protocol",

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "CLI/CLI.hpp"
+#include "motion.h"
 #include "render_arguments.h"
 #include "terminal_picture.h"
 
@@ -12,9 +12,7 @@ namespace diaphane::cli {
 
 struct ViewArguments {
   RenderArguments render;
-  std::optional<std::string> morph;  ///< "sphere"
-  std::optional<std::string> animation;
-  double edits_per_second = 30;
+  LoopArguments loop;
   std::optional<PictureProtocol> protocol;  ///< not given: by the terminal
 };
 

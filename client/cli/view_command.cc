@@ -12,7 +12,6 @@
 #include "orbit.h"
 #include "progress.h"
 #include "scene_upload.h"
-#include "session.h"
 #include "status.h"
 #include "terminal.h"
 #include "view_keys.h"
@@ -50,17 +49,10 @@ void move_camera(ViewKey key, Orbit& orbit) {
 }
 
 absl::StatusOr<MovingPlan> plan_view(const ViewArguments& arguments, const RenderArguments& render) {
-  if (!arguments.morph && !arguments.animation) {
-    absl::StatusOr<RenderPlan> plan = plan_render(render);
-    if (!plan.ok()) return plan.status();
-    return MovingPlan{*std::move(plan), nullptr};
-  }
-  MotionArguments motion;
-  motion.frames_per_second = arguments.edits_per_second;
-  motion.animation = arguments.animation;
-  if (arguments.morph)
-    motion.morph_frames = static_cast<uint32_t>(std::max(1.0, kSphereSeconds * arguments.edits_per_second));
-  return plan_motion(render, motion);
+  if (arguments.loop.any()) return plan_motion(render, motion_of(arguments.loop, kSphereSeconds));
+  absl::StatusOr<RenderPlan> plan = plan_render(render);
+  if (!plan.ok()) return plan.status();
+  return MovingPlan{*std::move(plan), nullptr};
 }
 
 /// Until somebody ends it, or something does.
@@ -103,14 +95,9 @@ absl::Status run_view(const GlobalOptions& global, const ViewArguments& argument
   progress.clear();
   if (!moving.ok()) return moving.status();
   for (const std::string& note : moving->plan.notes) print_note(note);
-  progress.step(global.server.empty() ? "starting a server" : "connecting");
-  const absl::StatusOr<Session> session = open_session(global);
-  if (!session.ok()) return session.status();
-  absl::StatusOr<TemporaryScene> scene = TemporaryScene::create(session->client, &moving->plan);
-  if (!scene.ok()) return scene.status();
-  absl::StatusOr<std::vector<MeshHandle>> meshes = fill_scene(scene->scene(), moving->plan, progress);
+  absl::StatusOr<UploadedScene> uploaded = upload_plan(global, &moving->plan, progress);
   progress.clear();
-  if (!meshes.ok()) return meshes.status();
+  if (!uploaded.ok()) return uploaded.status();
 
   StreamOptions options;
   if (protocol == PictureProtocol::kBlocks && !render.samples) moving->plan.options.settings.samples = kBlockSamples;
@@ -125,19 +112,19 @@ absl::Status run_view(const GlobalOptions& global, const ViewArguments& argument
     if (!terminal.ok()) return terminal.status();
     options.view.size = picture_size(protocol, (*terminal)->extent());
     Outcome outcome;
-    FrameStream stream = scene->scene().stream(options);
+    FrameStream stream = uploaded->scene.scene().stream(options);
     std::optional<Animator> animator;
     std::optional<Mover> mover;
     const Screen screen(stream, **terminal, protocol, outcome);
     if (moving->motion != nullptr) {
-      animator.emplace(*moving->motion, arguments.morph.has_value(), scene->scene(), *std::move(meshes),
-                       DeformerOptions());
-      mover.emplace(*animator, arguments.edits_per_second, outcome);
+      animator.emplace(*moving->motion, arguments.loop.morph.has_value(), uploaded->scene.scene(),
+                       std::move(uploaded->meshes), DeformerOptions());
+      mover.emplace(*animator, arguments.loop.edits_per_second, outcome);
     }
     status = look(**terminal, global.stop, protocol, options.view, stream, mover ? &*mover : nullptr, outcome);
   }
   if (!status.ok()) return status;
-  return scene->remove();
+  return uploaded->scene.remove();
 }
 
 }  // namespace diaphane::cli
